@@ -22,6 +22,11 @@ class OutputBuffer {
     text_.append(bytes.data(), bytes.data() + bytes.size());
     if (text_.size() > (1u << 20)) flush();
   }
+  // Its bytes, the least first, as on all machines that innermap runs on.
+  template <class Number>
+  void number(Number value) {
+    raw({reinterpret_cast<const char*>(&value), sizeof value});
+  }
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);

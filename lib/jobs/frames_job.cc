@@ -72,6 +72,14 @@ void requireOneGood(const std::vector<std::string>& errors, const std::string& u
                                                    errors.size(), unit, errors.front()));
 }
 
+std::string frameWarning(std::int64_t number, const std::string& warning) {
+  return fmt::format("frame {}: {}", number, warning);
+}
+
+std::string frameLeftOut(std::int64_t number, const std::string& error, const std::string& unit) {
+  return fmt::format("{} {} is left out: {}", unit, number, error);
+}
+
 MemoryNeed framesNeed(const FrameFitterSettings& settings, std::uint64_t others) {
   const auto at = [=](std::uint64_t sources) {
     FrameFitterSettings fewer = settings;

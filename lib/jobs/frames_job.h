@@ -43,6 +43,11 @@ FrameFits frameFits(const FrameFitter& fitter, std::vector<std::int64_t> numbers
 // one is called.
 void requireOneGood(const std::vector<std::string>& errors, const std::string& unit = "frame");
 
+// What a frame's warning is told as: "frame 12: ..."; and one that cannot be used.
+std::string frameWarning(std::int64_t number, const std::string& warning);
+std::string frameLeftOut(std::int64_t number, const std::string& error,
+                         const std::string& unit = "frame");
+
 // others: bytes that a frame takes beside its fit.
 MemoryNeed framesNeed(const FrameFitterSettings& settings, std::uint64_t others);
 // Of measuring maps from this rest pose on grids.

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <iterator>
 #include <ostream>
 
 #include "core/file.h"
+#include "core/output_buffer.h"
 #include "core/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/mesh_file.h"
@@ -15,51 +14,15 @@
 namespace innermap {
 namespace {
 
-// Collects output in pieces that are cheap to hand to a stream.
-class Buffer {
- public:
-  explicit Buffer(std::ostream& stream) : stream_(stream) {}
-  ~Buffer() { flush(); }
-
-  template <class... Args>
-  void print(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-    flushWhenLarge();
-  }
-
-  void littleEndian(std::uint64_t bits, int bytes) {
-    for (int k = 0; k < bytes; ++k) text_.push_back(static_cast<char>(bits >> (8 * k)));
-    flushWhenLarge();
-  }
-
-  void littleEndian(double value) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    littleEndian(bits, 8);
-  }
-
- private:
-  void flushWhenLarge() {
-    if (text_.size() > (1u << 20)) flush();
-  }
-  void flush() {
-    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
-    text_.clear();
-  }
-
-  std::ostream& stream_;
-  fmt::memory_buffer text_;
-};
-
-void writeProperty(Buffer& out, const VertexProperty& property, std::size_t v) {
+void writeProperty(OutputBuffer& out, const VertexProperty& property, std::size_t v) {
   if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&property.values))
-    out.littleEndian(static_cast<std::uint32_t>((*integers)[v]), 4);
+    out.number((*integers)[v]);
   else
-    out.littleEndian(std::get<std::vector<double>>(property.values)[v]);
+    out.number(std::get<std::vector<double>>(property.values)[v]);
 }
 
 void writePlyTo(std::ostream& stream, const Mesh& mesh, const PlyExtras& extras) {
-  Buffer out(stream);
+  OutputBuffer out(stream);
   const bool colours = !mesh.colours.empty();
   out.print("ply\nformat binary_little_endian 1.0\n");
   if (!extras.comment.empty()) out.print("comment {}\n", extras.comment);
@@ -71,21 +34,21 @@ void writePlyTo(std::ostream& stream, const Mesh& mesh, const PlyExtras& extras)
   out.print("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
             mesh.triangles.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    for (int a = 0; a < 3; ++a) out.littleEndian(mesh.vertices[v][a]);
+    for (int a = 0; a < 3; ++a) out.number(mesh.vertices[v][a]);
     for (int c = 0; colours && c < 3; ++c) {
       const double value = std::clamp(static_cast<double>(mesh.colours[v][c]), 0.0, 1.0);
-      out.littleEndian(static_cast<std::uint64_t>(std::lround(255 * value)), 1);
+      out.number(static_cast<std::uint8_t>(std::lround(255 * value)));
     }
     for (const VertexProperty& p : extras.properties) writeProperty(out, p, v);
   }
   for (const Triangle& t : mesh.triangles) {
-    out.littleEndian(3, 1);
-    for (const int v : t) out.littleEndian(static_cast<std::uint32_t>(v), 4);
+    out.number(std::uint8_t{3});
+    for (const std::int32_t v : t) out.number(v);
   }
 }
 
 void writeObj(std::ostream& stream, const Mesh& mesh) {
-  Buffer out(stream);
+  OutputBuffer out(stream);
   // Shortest digits that read back to the same number.
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3& p = mesh.vertices[v];

@@ -32,8 +32,7 @@ def write_pc2(path, frames, start=1.0, step=1.0):
 
 
 def read_pc2(path):
-    with open(path, "rb") as file:
-        content = file.read()
+    content = cli.read_file(path)
     _, _, points, start, step, frames = struct.unpack("<12siiffi", content[:32])
     assert len(content) == 32 + 12 * points * frames
     flat = struct.unpack(f"<{3 * points * frames}f", content[32:])
@@ -61,8 +60,7 @@ def write_scene(path, arrays, scene):
     for data, _, _ in arrays:
         views.append({"buffer": 0, "byteOffset": at, "byteLength": len(data)})
         at += len(data)
-    with open(binary, "wb") as file:
-        file.write(b"".join(data for data, _, _ in arrays))
+    cli.write_file(binary, b"".join(data for data, _, _ in arrays))
     with open(path, "w", encoding="ascii") as file:
         json.dump({"asset": {"version": "2.0"}, "bufferViews": views,
                    "buffers": [{"byteLength": at, "uri": binary}],

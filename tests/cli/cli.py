@@ -168,6 +168,18 @@ def file_size_limit(size):
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
+def write_file(path, content):
+    """Text or bytes."""
+    with open(path, "wb") as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+
+
+def read_file(path):
+    """Its bytes."""
+    with open(path, "rb") as file:
+        return file.read()
+
+
 def write_obj(path, vertices, faces):
     with open(path, "w", encoding="ascii") as file:
         for v in vertices:

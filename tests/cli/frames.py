@@ -40,8 +40,7 @@ def ball_frames(motion, times, name="frames/f.{:04d}.obj", subdivisions=3):
 
 
 def break_frame(path):
-    with open(path, "w", encoding="ascii") as file:
-        file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    cli.write_file(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
 
 
 def read_energies(folder):

@@ -4,7 +4,7 @@ import math
 import struct
 import zlib
 
-from cli import icosphere_arrays, innermap, write_obj
+from cli import icosphere_arrays, innermap, write_file, write_obj
 
 
 def swirl(p):
@@ -70,11 +70,10 @@ def write_png(path, size, colour):
         return struct.pack(">I", len(data)) + kind + data + \
             struct.pack(">I", zlib.crc32(kind + data))
 
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" +
-                   chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
-                   chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(bytes(rows))) +
-                   chunk(b"IEND", b""))
+    write_file(path, b"\x89PNG\r\n\x1a\n" +
+                     chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+                     chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(bytes(rows))) +
+                     chunk(b"IEND", b""))
     return path
 
 

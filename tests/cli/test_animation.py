@@ -89,10 +89,8 @@ def test_what_cannot_be_read_is_said():
     count = len(frames[0])
     fails(1, "sequence", "rest.obj", "other.mdd", "-o", "x", *SMALL,
           says=["other.mdd", f"{count - 2} points", f"{count} vertices"])
-    with open("walk.pc2", "rb") as file:
-        content = file.read()
-    with open("short.pc2", "wb") as file:
-        file.write(content[:-5])
+    content = cli.read_file("walk.pc2")
+    cli.write_file("short.pc2", content[:-5])
     fails(1, "sequence", "rest.obj", "short.pc2", "-o", "x", *SMALL, says=["short.pc2", "cut short"])
     fails(1, "sequence", "rest.obj", "walk.pc2", "walk.mdd", "-o", "x", *SMALL, says=["alone"])
     fails(1, "sequence", "rest.obj", "walk.abc", "-o", "x", *SMALL, says=["Alembic", ".mdd"])

@@ -98,8 +98,7 @@ def test_full_disk():
 def test_a_failure_keeps_the_file_that_was_there():
     icosphere()
     innermap("voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "20", "--quiet")
-    with open("a.vdb", "rb") as file:
-        before = file.read()
+    before = cli.read_file("a.vdb")
     fails(1, "voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "64",
           preexec_fn=file_size_limit(20000))
     with open("a.vdb", "rb") as file:

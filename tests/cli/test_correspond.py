@@ -5,16 +5,15 @@ import math
 import os
 import struct
 
-from cli import (MODELS, Skip, dry_run, fails, icosphere, icosphere_arrays, innermap, nightly,
-                 no_leftovers, read_json, read_obj, run, torus, write_obj)
+from cli import (MODELS, Skip, dry_run, fails, icosphere, icosphere_arrays, innermap, nightly, no_leftovers,
+                 read_file, read_json, read_obj, run, torus, write_file, write_obj)
 
 TYPES = {"double": ("d", 8), "float": ("f", 4), "int": ("i", 4), "uint": ("I", 4), "uchar": ("B", 1)}
 
 
 def read_ply(path):
     """A binary little endian PLY file: vertex rows as dictionaries, and faces."""
-    with open(path, "rb") as file:
-        data = file.read()
+    data = read_file(path)
     head, body = data.split(b"end_header\n", 1)
     names, formats, vertices, faces = [], "<", 0, 0
     element = None
@@ -148,8 +147,7 @@ def test_points_between_vertices_are_told():
     vertices, faces = read_obj("a.obj")
     middle = [sum(vertices[i][k] for i in faces[7]) / 3 for k in range(3)]
     target = read_obj("b.obj")[0][5]
-    with open("pairs.txt", "w", encoding="ascii") as file:
-        file.write(" ".join(f"{x:.17g}" for x in (*middle, *target)) + "\n")
+    write_file("pairs.txt", " ".join(f"{x:.17g}" for x in (*middle, *target)) + "\n")
     innermap("correspond", "a.obj", "b.obj", "-o", "out.ply", "--landmarks", "pairs.txt",
              "--report", "report.json")
     report = read_json("report.json")
@@ -161,8 +159,7 @@ def test_bad_landmarks():
     icosphere("b.obj", subdivisions=3)
     cases = [("1 2\n3\n", ["line 2", "1 numbers"]), ("162 1\n", ["line 1", "162", "a.obj"])]
     for text, says in cases:
-        with open("pairs.txt", "w", encoding="ascii") as file:
-            file.write(text)
+        write_file("pairs.txt", text)
         fails(1, "correspond", "a.obj", "b.obj", "-o", "out.ply", "--landmarks", "pairs.txt",
               says=["pairs.txt", *says])
     fails(1, "correspond", "a.obj", "b.obj", "-o", "out.ply", "--landmarks", "no.txt",
@@ -377,7 +374,6 @@ def test_map_lays_one_onto_the_other_by_itself():
     fails(2, "map", "a.obj", "-o", "fourth", says=["TARGET"])
 
 
-@nightly
 def doll(path, subdivisions):
     """A head, two arms and two legs; the same in front and behind, left and right."""
     limbs = (((0, 1, 0), 0.5), ((0.95, 0.3, 0), 0.8), ((-0.95, 0.3, 0), 0.8), ((0.4, -0.9, 0), 1.1),

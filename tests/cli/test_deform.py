@@ -27,11 +27,6 @@ def read_with_openvdb(code):
     return cli.independent("import pyopenvdb as vdb\n" + code).split()
 
 
-def content(path):
-    with open(path, "rb") as file:
-        return file.read()
-
-
 def stamps(folder="out"):
     return {name: os.stat(os.path.join(folder, name)).st_mtime_ns
             for name in sorted(os.listdir(folder))}
@@ -249,10 +244,10 @@ def test_a_full_disk_ends_the_run():
     fails(1, "deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.vdb", *SMALL,
           says=["d.0001.vdb", "frame 1"], preexec_fn=cli.file_size_limit(3000))
     deform("--frames", "1", output="out/d.vdb")
-    whole = content("out/d.0001.vdb")
+    whole = cli.read_file("out/d.0001.vdb")
     fails(1, "deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.vdb", *SMALL,
           says=["frame 2"], preexec_fn=cli.file_size_limit(3000))
-    assert os.listdir("out") == ["d.0001.vdb"] and content("out/d.0001.vdb") == whole
+    assert os.listdir("out") == ["d.0001.vdb"] and cli.read_file("out/d.0001.vdb") == whole
 
 
 cli.run(globals())

@@ -7,8 +7,8 @@ import os
 import struct
 import subprocess
 
-from cli import (MODELS, ROOT, Skip, fails, icosphere_arrays, independent, innermap, nightly,
-                 read_json, run, write_obj)
+from cli import (MODELS, ROOT, Skip, fails, icosphere_arrays, independent, innermap, nightly, read_file,
+                 read_json, run, write_file, write_obj)
 from scenes import fitted_ball, swirl, write_splats
 
 
@@ -55,13 +55,11 @@ def test_mesh_there_and_back():
 
 def test_what_is_outside():
     fitted_ball(swirl, "--interpolation", "smooth")
-    with open("cloud.ply", "w", encoding="utf-8") as file:
-        file.write("ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
-                   "property double z\nproperty int id\nend_header\n0 0 0 7\n1.2 0 0 8\n0.5 0 0 9\n")
+    write_file("cloud.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
+                            "property double z\nproperty int id\nend_header\n0 0 0 7\n1.2 0 0 8\n0.5 0 0 9\n")
     innermap("push", "map.ply", "cloud.ply", "-o", "in.ply", "--report", "r.json")
     assert read_json("r.json")["geometry"]["points_cut"] == 1
-    with open("in.ply", encoding="utf-8") as file:
-        text = file.read()
+    text = read_file("in.ply").decode()
     assert "element vertex 2\n" in text and " 8\n" not in text and text.endswith(" 9\n"), text
     innermap("push", "map.ply", "cloud.ply", "-o", "near.ply", "--outside", 0.1, "--report", "r.json")
     report = read_json("r.json")["geometry"]
@@ -69,15 +67,13 @@ def test_what_is_outside():
     assert abs(report["farthest_outside"] - 0.2 / math.sqrt(12)) < 1e-3, report
     innermap("push", "map.ply", "cloud.ply", "-o", "far.ply", "--outside", 0.01, "--fade-to",
              "identity", "--quiet")
-    with open("far.ply", encoding="utf-8") as file:
-        rows = [line.split() for line in file.read().split("end_header\n")[1].splitlines()]
+    rows = [line.split() for line in read_file("far.ply").decode().split("end_header\n")[1].splitlines()]
     assert max(abs(float(x) - y) for x, y in zip(rows[1], (1.2, 0, 0, 8))) < 1e-9, rows
 
 
 def test_long_edges_are_split():
     fitted_ball(swirl, "--interpolation", "smooth")
-    with open("rod.obj", "w", encoding="utf-8") as file:
-        file.write("v 0.3 0 -0.9\nv 0.3 0 0.9\nv -0.3 0 0.9\nf 1 2 3\nl 1 2\n")
+    write_file("rod.obj", "v 0.3 0 -0.9\nv 0.3 0 0.9\nv -0.3 0 0.9\nf 1 2 3\nl 1 2\n")
     innermap("push", "map.ply", "rod.obj", "-o", "a.obj", "--report", "r.json", "--subdivide", 0.001)
     added = read_json("r.json")["geometry"]["points_added"]
     innermap("push", "map.ply", "rod.obj", "-o", "b.obj", "--report", "r.json", "--subdivide", 0.0001)
@@ -225,12 +221,10 @@ def test_what_is_refused():
     fails(1, "push", "map.ply", "nowhere.obj", "-o", "a.obj", says=["nowhere.obj"])
     fails(1, "push", "map.ply", "ball.obj", "-o", "a.obj", "--max-memory", "100M", says=["100 MB"])
     fails(1, "push", "map.ply", "map.ply", "-o", "a.ply", "--vectors", "w", says=["'w'", "w_x"])
-    with open("cut.ply", "wb") as file:
-        file.write(b"ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty double x\n"
-                   b"property double y\nproperty double z\nend_header\n" + struct.pack("<3d", 0, 0, 0))
+    write_file("cut.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty double x\n"
+                          b"property double y\nproperty double z\nend_header\n" + struct.pack("<3d", 0, 0, 0))
     fails(1, "push", "map.ply", "cut.ply", "-o", "a.ply", says=["cut.ply"])
-    with open("wedge.mesh", "w", encoding="utf-8") as file:
-        file.write("MeshVersionFormatted 2\nDimension 3\nVertices 1\n0 0 0 0\nPrisms 0\nEnd\n")
+    write_file("wedge.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 1\n0 0 0 0\nPrisms 0\nEnd\n")
     fails(1, "push", "map.ply", "wedge.mesh", "-o", "a.vtu", says=["wedge.mesh"])
     done = innermap("push", "map.ply", "ball.obj", "-o", "a.obj", "--dry-run")
     assert "ball.obj" in done.stdout, done.stdout

@@ -119,8 +119,7 @@ def test_bad_files_are_one_line():
     """What else is damaged: the readers' unit tests."""
     for name, data in [("empty.obj", b""), ("text.vdb", b"hello\n" * 30), ("text.exr", b"hello\n" * 30),
                        ("odd.xyz", b"1 2 3\n"), ("nan.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")]:
-        with open(name, "wb") as file:
-            file.write(data)
+        cli.write_file(name, data)
         fails(1, "info", name, says=[name])
         if not name.endswith((".vdb", ".exr")):
             fails(1, "check", name, says=[name])

@@ -75,10 +75,8 @@ def test_depth_between_two_groups():
 
 def test_groups_that_touch_are_joined():
     write_capsule("shell.obj")
-    with open("shell.obj", encoding="utf-8") as file:
-        text = file.read()
-    with open("tiled.obj", "w", encoding="utf-8") as file:
-        file.write(text.replace("g rim", "g inner"))  # nothing is free
+    text = cli.read_file("shell.obj").decode()
+    cli.write_file("tiled.obj", text.replace("g rim", "g inner"))
     report = report_of("weights", "tiled.obj", "-o", "w.vdb", "--groups", "inner,outer",
                        "--resolution", "24")
     assert report["tolerance"]["met"], report
@@ -108,8 +106,7 @@ def test_properties_and_colours():
            "property float heat", "element face 4", "property list uchar int vertex_indices",
            "end_header", "0 0 0 255 0 0 0", "1 0 0 0 255 0 1", "0 1 0 0 0 255 2",
            "0 0 1 255 255 255 3", "3 0 2 1", "3 0 1 3", "3 1 2 3", "3 0 3 2", ""]
-    with open("tet.ply", "w", encoding="utf-8") as file:
-        file.write("\n".join(ply))
+    cli.write_file("tet.ply", "\n".join(ply))
     for option, name in [(["--property", "heat"], "heat"), (["--vertex-colours"], "green")]:
         innermap("harmonic", "tet.ply", "-o", "t.vdb", *option, "--resolution", "16", "--grids",
                  "value")

@@ -68,8 +68,7 @@ def test_scripts_of_completion_are_well_formed():
         for word in ["voxelize", "radius-ratio", "houdini"]:
             assert word in text, (shell, word)
         if shutil.which(shell):
-            with open("script", "w", encoding="utf-8") as file:
-                file.write(text)
+            cli.write_file("script", text)
             subprocess.run([shell, "-n", "script"], check=True)
 
 
@@ -92,8 +91,7 @@ def completes(shell, completed):
     if not shutil.which(shell):
         raise Skip(f"{shell} is not installed")
     cube()
-    with open("script", "w", encoding="utf-8") as file:
-        file.write(innermap("help", "--completion", shell).stdout)
+    cli.write_file("script", innermap("help", "--completion", shell).stdout)
     assert completed("innermap vox") == {"voxelize"}
     assert completed("innermap voxelize --voxel") == {"--voxel-size"}
     assert completed("innermap voxelize --names ") == {"innermap", "blender", "houdini"}
@@ -113,8 +111,7 @@ def test_pages_for_man_are_well_formed():
     innermap("help", "--pages", "pages")
     every = ["innermap", *(f"innermap-{c}" for c in commands())]
     for name in every:
-        with open(f"pages/{name}.1", encoding="utf-8") as file:
-            text = file.read()
+        text = cli.read_file(f"pages/{name}.1").decode()
         assert text.startswith(".TH " + name.upper().replace("-", "\\-") + " 1 ")
         if name != "innermap":
             command = name.split("-", 1)[1]

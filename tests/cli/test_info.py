@@ -80,8 +80,7 @@ def test_volume_textures_show_tiling_bounds_and_voxel_size():
 
 def pixels(path):
     """Rows of (red, green, blue) of a PNG of 8 bits."""
-    with open(path, "rb") as file:
-        data = file.read()[8:]
+    data = cli.read_file(path)[8:]
     packed, width, height, channels = b"", 0, 0, 3
     while data:
         length, kind = struct.unpack(">I4s", data[:8])

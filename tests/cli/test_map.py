@@ -5,8 +5,8 @@ import math
 import os
 import random
 
-from cli import (MODELS, Skip, cube, fails, file_size_limit, icosphere, icosphere_arrays,
-                 independent, innermap, nightly, read_json, run, write_obj)
+from cli import (MODELS, Skip, cube, fails, file_size_limit, icosphere, icosphere_arrays, independent,
+                 innermap, nightly, read_json, run, write_file, write_obj)
 
 FILES = ["map.ply", "map.vdb", "report.json", "section.png", "slices.exr"]
 
@@ -162,10 +162,8 @@ def test_bad_input():
     icosphere("other.obj", subdivisions=1)
     cube()
     write_obj("plane.obj", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
-    with open("text.obj", "w", encoding="ascii") as file:
-        file.write("no mesh at all\n")
-    with open("nan.obj", "w", encoding="ascii") as file:
-        file.write("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    write_file("text.obj", "no mesh at all\n")
+    write_file("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     cases = [(("no.obj", "ball.obj"), ["no.obj"]),
              (("ball.obj", "no.obj"), ["no.obj"]),
              (("plane.obj", "plane.obj"), ["plane.obj", "no inside"]),
@@ -309,15 +307,13 @@ def test_what_an_earlier_run_left_goes():
     small = ["--charges", "200", "--resolution", "16", "--quiet"]
     innermap("map", "ball.obj", "target.obj", "-o", "out", "--html", *small)
     for name in ("steps.png", "mine.txt"):
-        with open(f"out/{name}", "w", encoding="ascii") as file:
-            file.write("old")
+        write_file(f"out/{name}", "old")
     assert "report.html" in os.listdir("out")
     innermap("map", "ball.obj", "target.obj", "-o", "out", *small)
     assert sorted(os.listdir("out")) == sorted([*FILES, "mine.txt"]), os.listdir("out")
     # Nothing says that an earlier run wrote these.
     os.remove("out/report.json")
-    with open("out/report.html", "w", encoding="ascii") as file:
-        file.write("a page of the user's")
+    write_file("out/report.html", "a page of the user's")
     innermap("map", "ball.obj", "target.obj", "-o", "out", *small)
     assert "report.html" in os.listdir("out")
 

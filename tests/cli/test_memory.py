@@ -326,8 +326,7 @@ def test_damaged_exr_headers_cost_no_memory():
     """OpenEXR allocates by what it reads, 2 GB for 4 kB."""
     torus(24)
     for length in 16, 17, 24:
-        with open("bad.exr", "wb") as file:
-            file.write(exr_header(length))
+        cli.write_file("bad.exr", exr_header(length))
         cli.fails(1, "info", "bad.exr", says=["bad.exr"])
         cli.fails(1, "texture", "torus.obj", "bad.exr", "-o", "t.vdb", says=["bad.exr"])
     most = 1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss

@@ -16,11 +16,6 @@ def grids(path="a.vdb"):
     innermap("voxelize", "cube.obj", "-o", path, "--resolution", "12", "-q")
 
 
-def contents(path):
-    with open(path, "rb") as file:
-        return file.read()
-
-
 def pair():
     vertices, faces = cli.icosphere_arrays(2)
     cli.write_obj("ball.obj", vertices, faces)
@@ -33,7 +28,7 @@ def test_an_output_is_no_input():
     os.link("cube.obj", "hard.vdb")
     for name in ["soft.png", "soft.exr"]:
         os.symlink("g.vdb", name)
-    before = contents("cube.obj"), contents("g.vdb")
+    before = cli.read_file("cube.obj"), cli.read_file("g.vdb")
     for command in [["voxelize", "cube.obj", "-o", "hard.vdb"],
                     ["voxelize", "hard.obj", "-o", "./../" + os.path.basename(os.getcwd()) + "/hard.vdb"],
                     ["voxelize", "cube.obj", "-o", "a.vdb", "--report", "hard.obj"],
@@ -45,7 +40,7 @@ def test_an_output_is_no_input():
                     ["sphere", "cube.obj", "-o", "cube.ply", "--report", "cube.obj"],
                     ["voxelize", "cube.obj", "-o", "hard.vdb", "--dry-run"]]:
         fails(1, *command)
-    assert before == (contents("cube.obj"), contents("g.vdb"))
+    assert before == (cli.read_file("cube.obj"), cli.read_file("g.vdb"))
 
 
 def test_an_output_is_no_input_of_those_found_by_name_or_option():
@@ -59,8 +54,7 @@ def test_an_output_is_no_input_of_those_found_by_name_or_option():
           says=["frames/f.0001.obj"])
     fails(1, "sequence", "ball.obj", "frames", "-o", "out", "--report", "frames/f.0002.obj",
           says=["frames/f.0002.obj"])
-    with open("pairs.txt", "w", encoding="ascii") as file:
-        file.write("")
+    cli.write_file("pairs.txt", "")
     os.link("pairs.txt", "pairs.png")
     fails(1, "correspond", "ball.obj", "ball.obj", "-o", "c.ply", "--landmarks", "pairs.txt",
           "--picture", "pairs.png", says=["pairs.png"])
@@ -91,14 +85,13 @@ def test_folders_say_what_they_hold():
     pair()
     os.mkdir("out")
     for name in ["map.ply", "notes.txt", "thesis.doc"]:
-        with open(f"out/{name}", "w", encoding="ascii") as file:
-            file.write("mine")
+        cli.write_file(f"out/{name}", "mine")
     command = ["map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "8", "--charges", "100"]
     for dry in [["--dry-run"], []]:
         said = innermap(*command, *dry).stderr
         assert all(name in said for name in ("map.ply", "notes.txt", "thesis.doc")), said
-        assert contents("out/notes.txt") == contents("out/thesis.doc") == b"mine"
-        assert (contents("out/map.ply") == b"mine") == bool(dry)
+        assert cli.read_file("out/notes.txt") == cli.read_file("out/thesis.doc") == b"mine"
+        assert (cli.read_file("out/map.ply") == b"mine") == bool(dry)
     said = innermap(*command).stderr
     assert "notes.txt" not in said and "thesis.doc" not in said, said
     innermap(*command[:4], "new/deep", *command[5:])
@@ -148,19 +141,19 @@ def test_pipes_get_the_whole_file():
     innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "12", "-q")
     os.mkfifo("pipe")
     got = []
-    reader = threading.Thread(target=lambda: got.append(contents("pipe")))
+    reader = threading.Thread(target=lambda: got.append(cli.read_file("pipe")))
     reader.start()
     innermap("slice", "a.vdb", "-o", "pipe", "-q")
     reader.join(30)
     assert stat.S_ISFIFO(os.stat("pipe").st_mode)
     innermap("slice", "a.vdb", "-o", "s.exr", "-q")
-    assert len(got[0]) > 1000 and len(got[0]) == len(contents("s.exr"))
+    assert len(got[0]) > 1000 and len(got[0]) == len(cli.read_file("s.exr"))
     done = innermap("check", "cube.obj", "--report", "/dev/stdout")
     assert done.stdout.index("box") < done.stdout.index('"command"'), done.stdout
     with open("text", "w", encoding="ascii") as file:
         subprocess.run([cli.PROGRAM, "check", "cube.obj", "--report", "/dev/stdout"], stdout=file,
                        check=True)
-    assert b"box" in contents("text") and b'"command"' in contents("text")
+    assert b"box" in cli.read_file("text") and b'"command"' in cli.read_file("text")
 
 
 def test_links_are_followed():
@@ -213,8 +206,7 @@ FOLDERS = ("map", "sequence", "transfer-distance")
 def test_every_command_says_first_what_cannot_be_written():
     # The inputs are no meshes or grids at all: to read one would be another error.
     for name in ("cube.obj", "ball.obj", "egg.obj", "m.ply", "a.vdb", "a.exr", "frame.1.obj"):
-        with open(name, "w", encoding="ascii") as file:
-            file.write("nothing\n")
+        cli.write_file(name, "nothing\n")
     for command in commands():
         ending = ENDINGS.get(command[0], "vdb")
         fails(1, *command, "-o", f"x.{ending}", "--report", "none/r.json",
@@ -240,20 +232,19 @@ def test_every_command_says_first_what_cannot_be_written():
 def test_a_folder_of_files_is_all_new_or_all_old():
     pair()
     innermap("map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "16", "-q")
-    before = {name: contents("out/" + name) for name in os.listdir("out")}
+    before = {name: cli.read_file("out/" + name) for name in os.listdir("out")}
     os.remove("out/section.png")
     os.makedirs("out/section.png/inner")
     fails(1, "map", "egg.obj", "ball.obj", "-o", "out", "--resolution", "16", says=["section.png"])
     os.removedirs("out/section.png/inner")
     for name in set(before) - {"section.png"}:
-        assert contents("out/" + name) == before[name], name
+        assert cli.read_file("out/" + name) == before[name], name
     assert set(os.listdir("out")) == set(before) - {"section.png"}
 
 
 def test_folders_made_for_nothing_go_with_their_parents():
     cube("cube.obj")
-    with open("bad.obj", "w", encoding="ascii") as file:
-        file.write("nothing\n")
+    cli.write_file("bad.obj", "nothing\n")
     fails(1, "map", "cube.obj", "bad.obj", "-o", "one/two/three")
     no_leftovers("cube.obj", "bad.obj")
 

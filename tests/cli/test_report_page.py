@@ -139,8 +139,7 @@ def check_looks(page):
     assert seen(page, "#cut-x")["sum"] != picture["sum"]
     page.pdf("page.pdf")
     assert os.path.getsize("page.pdf") > 20_000
-    with open("page.pdf", "rb") as file:
-        pages = len(re.findall(rb"/Type */Page\b", file.read()))
+    pages = len(re.findall(rb"/Type */Page\b", cli.read_file("page.pdf")))
     assert pages == 2, pages
     os.remove("page.pdf")
 

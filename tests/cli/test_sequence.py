@@ -43,8 +43,7 @@ def test_what_is_written():
     innermap("sequence", "rest.obj", "frames/f.####.obj", "-o", "a/out", "--charges", "400",
              "--resolution", "24")
     assert sorted(os.listdir("a/out")) == ["energies.csv", "energies.svg", "report.json"]
-    with open("a/out/energies.svg", encoding="utf-8") as file:
-        chart = file.read()
+    chart = cli.read_file("a/out/energies.svg").decode()
     assert chart.startswith("<svg") and chart.endswith("</svg>\n") and chart.count("<polyline") == 2
     report, rows = cli.read_json("a/out/report.json"), read_energies("a/out")
     assert report["frames"]["number"] == [1, 2, 3] and report["frames"]["broken"] == []
@@ -102,8 +101,7 @@ def test_grids_of_each_frame():
 def test_a_broken_frame_is_reported_and_the_others_go_on():
     ball_frames(twisted, {n: 0.1 * n for n in range(1, 8)})
     break_frame("frames/f.0002.obj")
-    with open("frames/f.0004.obj", "w", encoding="ascii") as file:
-        file.write("v 1 nan 2\n")
+    cli.write_file("frames/f.0004.obj", "v 1 nan 2\n")
     vertices, faces = cli.icosphere_arrays(3)
     cli.write_obj("frames/f.0006.obj", [(1, 2, 3)] * len(vertices), faces)
     cli.write_obj("frames/f.0007.obj", [(v[0], v[1], 0) for v in vertices], faces)

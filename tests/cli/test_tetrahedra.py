@@ -5,14 +5,13 @@ import csv
 import math
 import os
 
-from cli import (MODELS, ROOT, Skip, cube, dry_run, fails, icosphere, icosphere_arrays, innermap,
-                 nightly, no_leftovers, read_json, run, torus, write_obj)
+from cli import (MODELS, ROOT, Skip, cube, dry_run, fails, icosphere, icosphere_arrays, innermap, nightly,
+                 no_leftovers, read_file, read_json, run, torus, write_obj)
 
 
 def read_medit(path):
     """Vertices and tetrahedra of an ASCII .mesh file."""
-    with open(path, encoding="ascii") as file:
-        words = file.read().split()
+    words = read_file(path).decode().split()
     at = words.index("Vertices")
     count = int(words[at + 1])
     numbers = words[at + 2:at + 2 + 4 * count]

@@ -228,8 +228,7 @@ def test_udim_tiles():
 def test_images_that_are_none():
     """Other bad files: the unit test ImageFile.BadFiles."""
     planar_ball()
-    with open("lying.ppm", "wb") as file:
-        file.write(b"P6\n2000000000 2000000000\n255\n" + bytes(99))
+    cli.write_file("lying.ppm", b"P6\n2000000000 2000000000\n255\n" + bytes(99))
     for name in ("lying.ppm", "ball.obj", "missing.png"):
         fails(1, "texture", "ball.obj", name, "-o", "t.vdb", says=[name], timeout=60)
 

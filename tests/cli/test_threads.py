@@ -37,8 +37,7 @@ def contents():
     files = [os.path.join(folder, name) for folder, _, names in os.walk(".") for name in names]
     found = {}
     for path in files:
-        with open(path, "rb") as file:
-            found[path] = file.read()
+        found[path] = cli.read_file(path)
     return {path: data for path, data in found.items() if not path.endswith(".json")}
 
 

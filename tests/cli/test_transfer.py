@@ -2,8 +2,8 @@
 """Push and pull: volumes carried through maps of meshes made here, and of the horse where it is."""
 
 
-from cli import (MODELS, Skip, fails, file_size_limit, icosphere, independent, innermap,
-                 no_leftovers, read_json, run)
+from cli import (MODELS, Skip, fails, file_size_limit, icosphere, independent, innermap, no_leftovers,
+                 read_file, read_json, run, write_file)
 from scenes import fitted_ball, swirl
 
 
@@ -148,10 +148,8 @@ def test_bad_input():
     # The target's volume is not where the source is.
     innermap("voxelize", "target.obj", "-o", "there.vdb", "--resolution", "32", "--quiet")
     fails(1, "push", "map.ply", "there.vdb", "-o", "x.vdb", says=["surface", "ball.obj"])
-    with open("rest.vdb", "rb") as file:
-        content = file.read()
-    with open("half.vdb", "wb") as file:
-        file.write(content[:len(content) // 2])
+    content = read_file("rest.vdb")
+    write_file("half.vdb", content[:len(content) // 2])
     fails(1, "push", "map.ply", "half.vdb", "-o", "x.vdb", says=["half.vdb"])
     fails(1, "push", "map.ply", "rest.vdb", "-o", "x.vdb", "--max-memory", "100MB",
           says=["--max-memory"])

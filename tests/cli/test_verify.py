@@ -5,8 +5,8 @@ import array
 import math
 import os
 
-from cli import (cube, error_line, fails, icosphere_arrays, innermap, no_leftovers, read_json, run,
-                 write_obj)
+from cli import (cube, error_line, fails, icosphere_arrays, innermap, no_leftovers, read_file, read_json, run,
+                 write_file, write_obj)
 
 PROOF = "one_to_one_proof_"
 
@@ -38,8 +38,7 @@ class MapFile:
     """A map.ply: its comments, and its charges x, y, z, w0, w1, w2, which may be edited."""
 
     def __init__(self, path):
-        with open(path, "rb") as file:
-            data = file.read()
+        data = read_file(path)
         end = data.index(b"end_header\n") + len(b"end_header\n")
         self.header = data[:end].decode("ascii").split("\n")
         count = next(int(line.split()[2]) for line in self.header if "element vertex" in line)
@@ -68,8 +67,7 @@ class MapFile:
 
 def verified(data, *options, exit_code=0):
     """Results by claim of a file of these bytes."""
-    with open("edited.ply", "wb") as file:
-        file.write(data)
+    write_file("edited.ply", data)
     if os.path.exists("verify.json"):
         os.remove("verify.json")
     done = innermap("verify", "edited.ply", "--report", "verify.json", "--quiet", *options,
@@ -85,8 +83,7 @@ def verified(data, *options, exit_code=0):
 
 def refused(data, *options):
     """That it is no map: in words, exit code 1."""
-    with open("edited.ply", "wb") as file:
-        file.write(data)
+    write_file("edited.ply", data)
     return fails(1, "verify", "edited.ply", *options, says=["edited.ply"])
 
 

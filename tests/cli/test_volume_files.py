@@ -241,8 +241,7 @@ assert numpy.abs(nibabel.affines.apply_affine(image.affine, at) - rows[:, :3]).m
 
 def usd_of(name, **told):
     """The text of a .usda file, which has the lines `told`, and which the checker of hosts accepts."""
-    with open(name, encoding="utf-8") as file:
-        text = file.read()
+    text = cli.read_file(name).decode()
     assert text.startswith("#usda 1.0\n"), text
     for key, value in told.items():
         assert f"    {key} = {value}\n" in text, (key, text)
@@ -401,11 +400,9 @@ def test_info_of_every_format():
     assert told("g.dds")["grids"][0]["type"] == "R16F"
     assert told("g.usda")["grids"][0]["files"] == ["./g.vdb"] and told("g.usda")["upAxis"] == '"Z"'
     for file in ("g.nvdb", "g.vti", "g.dds", "g.nii.gz", "g.usda"):
-        with open(file, "rb") as stream:
-            content = stream.read()
+        content = cli.read_file(file)
         for size in (0, 3, 60, 200, len(content) // 2):
-            with open("cut." + file.split(".", 1)[1], "wb") as stream:
-                stream.write(content[:size])
+            cli.write_file("cut." + file.split(".", 1)[1], content[:size])
             done = subprocess.run([cli.PROGRAM, "info", "cut." + file.split(".", 1)[1]], capture_output=True,
                                   check=False)
             assert done.returncode in (0, 1), (file, size, done)

@@ -1,5 +1,7 @@
 """Grids, meshes, cells, files and points through a map, and frames: as the program does them."""
 
+import warnings
+
 import numpy as np
 
 import cli
@@ -168,6 +170,28 @@ def test_measures_a_sequence_as_the_program_does():
     table = innermap.sequence((V, F), poses, charges=800, resolution=32, prove="off")
     assert "proof_cells" not in table and "statement" not in table, table.keys()
     assert table["error"][1] and not table["error"][0] and np.isnan(table["harmonic"][1])
+
+
+def test_marks_frames_left_out_and_warns_of_each():
+    V, F = shapes.ball(2)
+    spike = np.concatenate([3 * V[:1], V[1:]])  # more than so few charges can fit
+    poses = [V, 0 * V, spike]                   # the second bounds no solid
+    few, X = {"charges": 30, "numbers": [4, 7, 9]}, shapes.inside(20)
+    for carry in (lambda: list(innermap.deform((V, F), X, poses, **few)[0][:, 0, 0]),
+                  lambda: innermap.deform((V, F), smoke(), poses, grids="density", **few),
+                  lambda: list(innermap.sequence((V, F), poses, resolution=16, **few)["harmonic"])):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            made = carry()
+        assert len(made) == 3 and (made[1] is None or np.isnan(made[1])), made
+        assert made[0] is not None and made[2] is not None and made[2] == made[2], made
+        assert [w.category for w in told] == [RuntimeWarning] * 2, told
+        told = [str(w.message) for w in told]
+        assert told[0].startswith("frame 7 is left out: ") and told[1].startswith("frame 9: "), told
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        shapes.refuses((carry, RuntimeWarning, "frame 7"))
+    shapes.refuses((lambda: innermap.deform((V, F), X, [0 * V], charges=30), innermap.DataError, ""))
 
 
 def test_takes_point_caches():

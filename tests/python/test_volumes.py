@@ -113,8 +113,7 @@ def test_continues_an_image_as_the_program_does():
             file.write("v %.9g %.9g %.9g\nvt %.9g %.9g\n" % (*v, *(0.5 + 0.4 * v[:2])))
         for f in F + 1:
             file.write("f %d/%d %d/%d %d/%d\n" % tuple(np.repeat(f, 2)))
-    with open("image.ppm", "wb") as file:
-        file.write(b"P6 4 4 255\n" + bytes(range(48)))
+    cli.write_file("image.ppm", b"P6 4 4 255\n" + bytes(range(48)))
     grids = innermap.solid_texture("uv.obj", "image.ppm", resolution=20, charges=300)
     cli.innermap("texture", "uv.obj", "image.ppm", "-o", "program.vdb", "--resolution", "20",
                  "--charges", "300")

@@ -167,8 +167,7 @@ Command makeCheckCommand() {
   c.example("innermap check horse.obj");
   c.example("innermap check posed.obj --outer outer.ply --html");
   c.example("innermap check horse.obj --json > findings.json");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -77,6 +77,12 @@ class Command {
   void addSpace();
   const SpaceSettings& space() const { return *space_; }
   void run(std::function<void(Context&)> body) { body_ = std::move(body); }
+  // The last: this command, which calls `body` with its options.
+  template <class Options>
+  Command running(std::shared_ptr<Options> options, void (*body)(const Options&, Context&)) {
+    run([options = std::move(options), body](Context& context) { body(*options, context); });
+    return std::move(*this);
+  }
 
   const std::string& name() const { return name_; }
   const std::string& summary() const { return summary_; }

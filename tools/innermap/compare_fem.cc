@@ -280,8 +280,7 @@ Command makeCompareFemCommand() {
   addCut(c, o->cut);
   c.example("innermap compare-fem spot.obj --functions -o spot-fem");
   c.example("innermap compare-fem rest.obj pose.obj -o pose-fem --resolutions 24,48,96");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -103,8 +103,7 @@ Command makeCorrespondCommand() {
   c.example(
       "innermap correspond cow.obj man.obj -o out.ply --landmarks pairs.txt --subdivide 0.005");
   c.example("innermap correspond scan.ply ball.obj -o out.ply --surface-resolution 96");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

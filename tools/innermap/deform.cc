@@ -131,7 +131,7 @@ class Deformer {
     const auto& result = pushed.result;
     addSeconds(context_.report().seconds, pushed.seconds);
     for (const std::string& warning : result.warnings)
-      context_.warning(fmt::format("frame {}: {}", frame.number, warning));
+      context_.warning(frameWarning(frame.number, warning));
     if (options_.velocity)
       for (const openvdb::GridBase::Ptr& grid : result.grids)
         grid->insertMeta("innermap_frames_per_second",
@@ -343,8 +343,7 @@ Command makeDeformCommand() {
   c.example(
       "innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.%04d.vdb' --velocity --fps "
       "25");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

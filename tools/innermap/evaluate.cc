@@ -156,8 +156,7 @@ Command makeEvaluateCommand() {
   c.example("innermap evaluate map.ply -o map.vdb --resolution 256");
   c.example("innermap evaluate map.ply -o map.vdb --voxel-size 0.01 --names blender");
   c.example("innermap evaluate map.ply -o field.nii.gz --inverse");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -150,8 +150,7 @@ Command makeExportCommand() {
   c.example("innermap export 'out/smoke.####.vdb' -o smoke.usda --fps 25");
   c.example("innermap export map.vdb.shares -o map.usda");
   c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grids map,density");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -62,8 +62,7 @@ Command makeFitCommand() {
   c.example("innermap fit rest.obj pose.obj -o map.ply");
   c.example("innermap fit rest.obj pose.obj -o map.ply --tolerance 1e-4 --best-effort");
   c.example("innermap fit rest.obj pose.obj -o map.ply --charges 4000 --distance 0.02");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -50,8 +50,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
     if (result.error.empty())
       ++finished;
     else
-      context.warning(
-          fmt::format("{} {} is left out: {}", frames.unit, result.file.number, result.error));
+      context.warning(frameLeftOut(result.file.number, result.error, frames.unit));
     if (ended) ended(result);
   };
   try {

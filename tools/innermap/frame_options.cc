@@ -160,8 +160,7 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
                                                       const FrameFit& fit) mutable {
     const std::int64_t number = frames.all[index].number;
     addSeconds(context.report().seconds, fit.seconds);
-    for (const std::string& warning : fit.warnings)
-      context.warning(fmt::format("frame {}: {}", number, warning));
+    for (const std::string& warning : fit.warnings) context.warning(frameWarning(number, warning));
     if (!fit.jumps.empty() && !told) noteJumps(number, fit.jumps, context);
     told = told || !fit.jumps.empty();
     if (shown) shown->add(number, mesh.vertices, fit);

@@ -240,8 +240,7 @@ Command makeHelpCommand() {
            "write what an installation takes: all pages for man and completion scripts")
       .advanced();
   c.example("innermap help voxelize");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -124,8 +124,7 @@ Command makeHexahedralizeCommand() {
       .advanced();
   c.example("innermap hexahedralize spot.obj -o spot.vtu --picture spot.png");
   c.example("innermap hexahedralize part.obj -o part.msh --blocks 24 --polycube cubes.obj");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

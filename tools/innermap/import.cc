@@ -117,8 +117,7 @@ Command makeImportCommand() {
   c.example(
       "innermap import cloud.exr -o cloud.vdb --tiles 12x12 --voxel-size 0.1 --grids density "
       "--class fog");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

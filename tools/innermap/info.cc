@@ -150,8 +150,7 @@ Command makeInfoCommand() {
   c.flag("--json", &o->json, "print machine-readable text with all metadata on stdout");
   c.example("innermap info map.vdb");
   c.example("innermap info map.vdb --json | jq '.grids[].name'");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

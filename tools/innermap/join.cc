@@ -193,8 +193,7 @@ Command makeJoinCommand() {
   c.flag("--partial", &o->partial, "join the frames that are there");
   c.example("innermap join energies");
   c.example("innermap join map.vdb.shares");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -296,8 +296,7 @@ Command makeMapCommand() {
   c.example("innermap map rest.obj pose.obj -o out");
   c.example("innermap map cow.obj man.obj -o out");
   c.example("innermap map rest.obj pose.obj -o out --tolerance 3e-4 --resolution 256");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -57,8 +57,7 @@ Command makePolycubeCommand() {
       .defaults("as many as give 3000 vertices");
   c.option("--picture", "FILE", &o->picture, "a .png of the mesh and the cubes").writes({".png"});
   c.example("innermap polycube spot.obj -o cubes.obj --blocks 12 --picture cubes.png");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

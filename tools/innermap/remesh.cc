@@ -105,8 +105,7 @@ Command makeRemeshCommand() {
       "Jacobian");
   c.example("innermap remesh map.ply rest.vtu posed.obj -o posed.vtu");
   c.example("innermap remesh map.ply posed.vtu rest.obj -o back.vtu --back");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -285,8 +285,7 @@ Command makeReportCommand() {
       .defaults("report.html in the folder");
   c.example("innermap report out");
   c.example("innermap report out -o page.html");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

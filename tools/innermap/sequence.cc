@@ -172,8 +172,7 @@ Command makeSequenceCommand() {
                   "together. A share skips frames that are finished");
   c.example("innermap sequence rest.obj 'frames/*.obj' -o energies");
   c.example("innermap sequence rest.obj 'walk.####.obj' -o energies --frames 1-48x2 --grids");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

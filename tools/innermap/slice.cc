@@ -141,8 +141,7 @@ Command makeSliceCommand() {
   c.example("innermap slice map.vdb --axis z --slices 16 -o slices.exr");
   c.example("innermap slice map.vdb --picture section.png --grid jacobian --section x=0.5");
   c.example("innermap slice texture.vdb --picture section.png --colour --section x");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

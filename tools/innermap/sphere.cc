@@ -52,8 +52,7 @@ Command makeSphereCommand() {
   c.outputFile(&o->output, {".ply"}, "the .ply file to write");
   addSurfaceOptions(c, o->surface);
   c.example("innermap sphere cow.obj -o cow_sphere.ply");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -330,8 +330,7 @@ Command makeStudyCommand() {
   addFitOptions(c, *o);
   c.example("innermap study rest.obj pose.obj -o study");
   c.example("innermap study rest.obj pose.obj -o study --charges 100:3200:6 --max-time 600");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -110,8 +110,7 @@ Command makeTetrahedralizeCommand() {
                  "a .png of the cells behind a cut, coloured by their least dihedral angle");
   c.example("innermap tetrahedralize part.obj -o part.msh --edge 0.02 --features 30");
   c.example("innermap tetrahedralize spot.obj -o spot.vtu --resolution 48 --picture spot.png");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -153,8 +153,7 @@ Command makeTextureCommand() {
   c.setting(namesSetting(&o->names));
   c.example("innermap texture spot.obj spot_texture.png -o spot.vdb --mode colour");
   c.example("innermap texture spot.obj 'spot.<UDIM>.exr' -o spot.vdb --seams blend");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

@@ -132,8 +132,7 @@ Command makeTransferDistanceCommand() {
       .defaults("0 to the largest in the target");
   c.settings(describe(o->verdict));
   c.example("innermap transfer-distance map.ply -o distance --resolution 256");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

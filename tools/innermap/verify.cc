@@ -92,8 +92,7 @@ Command makeVerifyCommand() {
   c.settings(describe(o->settings));
   c.example("innermap verify map.ply");
   c.example("innermap verify map.ply --require whole --json | jq .verification");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

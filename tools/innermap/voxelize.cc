@@ -240,8 +240,7 @@ Command makeVoxelizeCommand() {
   c.addSpace();
   c.example("innermap voxelize labels.nii.gz -o organs.vdb --labels 2,5 --each-label");
   c.example("innermap voxelize bunny.obj -o bunny.vdb --resolution 256 --fog");
-  c.run([o](Context& context) { run(*o, context); });
-  return c;
+  return c.running(o, run);
 }
 
 }  // namespace innermap::tool

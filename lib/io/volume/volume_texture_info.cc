@@ -8,6 +8,7 @@
 #include "innermap/core/error.h"
 #include "innermap/io/pictures.h"
 #include "innermap/io/volume_texture.h"
+#include "io/exr/detail/exr_stream.h"
 #include "io/volume/detail/volume_attributes.h"
 
 namespace innermap {
@@ -31,16 +32,10 @@ bool isSound(const VolumeAttributes& a) {
 
 std::optional<VolumeTextureInfo> readVolumeTextureInfo(const std::string& path) {
   VolumeAttributes a;
-  try {
+  withExrErrors(path, "read", "", [&] {
     const Imf::MultiPartInputFile file(path.c_str(), 0, /*reconstructChunkOffsetTable=*/false);
     a = readVolumeAttributes(path, file.header(0));
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw FileError(path, std::string("cannot be read (") + error.what() + ")");
-  }
+  });
   if (!isSound(a)) return std::nullopt;
   VolumeLattice lattice;
   lattice.setAxis(*a.axis);

@@ -49,10 +49,6 @@ class Slab {
   std::vector<std::vector<float>> values_;
 };
 
-std::size_t channelCount(const VolumeGrid& grid) {
-  return grid.channels.size() + (grid.activeChannel.empty() ? 0 : 1);
-}
-
 // Slices from `first` on that lie in the same layer of leaves.
 int slabEnd(const VolumeLattice& lattice, int first) {
   const int at = lattice.origin[lattice.axis] + first;
@@ -107,7 +103,7 @@ class Reading {
       std::uint64_t bytes = fixed_ + leaves * builders_[g]->leafBytes();
       for (const auto& builder : builders_) bytes += builder->memory();
       need(bytes);
-      const std::size_t channels = channelCount(source_.grids()[g]);
+      const std::size_t channels = source_.grids()[g].channelCount();
       notFinite_ += builders_[g]->add({first, count, slab.channels(channel, channels)});
       channel += channels;
     }

@@ -77,11 +77,7 @@ void putHeader(OutputBuffer& out, const VolumePlan& plan) {
 
 void putNumber(OutputBuffer& out, double value, bool asHalf) {
   const auto single = static_cast<float>(value);
-  const half small(asHalf ? single : 0.0f);
-  if (asHalf)
-    out.raw({reinterpret_cast<const char*>(&small), sizeof(small)});
-  else
-    out.raw({reinterpret_cast<const char*>(&single), sizeof(single)});
+  asHalf ? out.number(half(single)) : out.number(single);
 }
 
 }  // namespace

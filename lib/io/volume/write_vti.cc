@@ -80,8 +80,7 @@ VolumeTextureResult writeVti(const std::string& path, const openvdb::GridPtrVec&
       const VolumeGrid& grid = plan.grids[g];
       const DenseType& type = denseType(grid.type);
       OutputBuffer out(stream);
-      const std::uint64_t bytes = bytesOf(plan, grid);
-      out.raw({reinterpret_cast<const char*>(&bytes), sizeof(bytes)});
+      out.number(std::uint64_t{bytesOf(plan, grid)});
       forSlices(plan, g, g + 1, "writing the VTK file", [&](int, const SliceValues& values) {
         char number[8];
         for (std::size_t i = 0; i < values[0].size(); ++i)

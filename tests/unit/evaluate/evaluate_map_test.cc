@@ -13,6 +13,9 @@ namespace innermap {
 namespace {
 
 using test::affineMap;
+using test::affineOf;
+using test::chargedMap;
+using test::kIdentity;
 
 Vec3 turned(const Vec3& p) {
   const double a = 0.5, b = 0.8;
@@ -25,17 +28,6 @@ Mesh cube() {
   Mesh mesh = shapes::box({-1, -1, -1}, {1, 1, 1});
   for (Vec3& v : mesh.vertices) v = turned(v);
   return mesh;
-}
-
-// Identity and three charges outside the cube.
-HarmonicMap chargedMap() {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
-  Matrix weights(3, 3);
-  for (int i = 0; i < 9; ++i) weights.data()[i] = 0.3 * std::sin(i + 1.0);
-  return HarmonicMap(
-      HarmonicField({{2.4, 0.3, 0}, {-0.2, 2.6, 0.4}, {0.3, 0.2, -2.5}}, weights, affine));
 }
 
 openvdb::FloatGrid::Ptr levelSet(const Solid& solid, int resolution) {
@@ -137,10 +129,7 @@ HarmonicMap manyCharges() {
     for (std::size_t k = 0; k < 3; ++k)
       weights(i, k) = 2e-3 * (random.uniform(1000000 + 3 * i + k) - 0.5);
   }
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
-  return HarmonicMap(HarmonicField(sources, weights, affine));
+  return HarmonicMap(HarmonicField(sources, weights, affineOf(kIdentity)));
 }
 
 TEST(EvaluateMap, ManyChargesAreSummedToTheAccuracy) {
@@ -169,13 +158,10 @@ TEST(EvaluateMap, ManyChargesAreSummedToTheAccuracy) {
 
 // A charge just outside a face of the cube pushes it in until it folds.
 HarmonicMap foldedMap() {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
   const Vec3 normal = turned({0, 0, 1});
   Matrix weights(1, 3);
   for (int r = 0; r < 3; ++r) weights(0, r) = -0.127 * normal[r];
-  return HarmonicMap(HarmonicField({1.3 * normal}, weights, affine));
+  return HarmonicMap(HarmonicField({1.3 * normal}, weights, affineOf(kIdentity)));
 }
 
 TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {

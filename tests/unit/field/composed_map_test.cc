@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "field/affine_map.h"
 #include "field/sphere_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/field/harmonic_field.h"
@@ -9,15 +10,10 @@ namespace {
 
 // Near the identity, with charges about the ball of radius 2.
 HarmonicMap gentle(double strength, const Vec3& shift) {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (std::size_t k = 0; k < 3; ++k) {
-    affine.coefficients(0, k) = shift[static_cast<int>(k)];
-    affine.coefficients(1 + k, k) = 1;
-  }
   Matrix weights(30, 3);
   for (std::size_t i = 0; i < 90; ++i) weights.data()[i] = strength * std::sin(i + 1.0);
-  return HarmonicMap(HarmonicField(testing::spherePoints(30, 3), weights, affine));
+  return HarmonicMap(
+      HarmonicField(testing::spherePoints(30, 3), weights, test::affineOf(test::kIdentity, shift)));
 }
 
 const HarmonicMap kFirst = gentle(0.1, {0.1, 0, 0}), kSecond = gentle(-0.2, {0, -0.1, 0.05}),

@@ -30,9 +30,9 @@ inline Mesh twoBalls(double apart) {
   return mesh;
 }
 
-inline Vec3 affineMap(const Vec3& p) {
-  return {2 * p.x + 0.5 * p.y + 1, p.y - 0.25 * p.z, 1.5 * p.z + 0.125 * p.x - 2};
-}
+inline constexpr Mat3 kAffine = {{{2, 0.5, 0}, {0, 1, -0.25}, {0.125, 0, 1.5}}};
+inline constexpr Vec3 kAffineShift = {1, 0, -2};
+inline Vec3 affineMap(const Vec3& p) { return kAffine * p + kAffineShift; }
 
 // Each component is harmonic, the map one-to-one on the unit ball.
 inline Vec3 harmonicPolynomial(const Vec3& p) {

@@ -12,10 +12,7 @@ namespace {
 
 using namespace test;
 
-const openvdb::CoordBBox kBox(openvdb::Coord(-5, 2, 30), openvdb::Coord(12, 9, 41));
-
 openvdb::FloatGrid::Ptr coded() {
-  openvdb::initialize();
   return block<openvdb::FloatGrid>(
       "code", kBox, [](auto c) { return float(10000 * (c.x() + 50) + 100 * c.y() + c.z()); }, 0.5);
 }
@@ -68,7 +65,6 @@ TEST(Slice, LayersAreDistinctSpacedAndInside) {
 }
 
 TEST(Slice, InactiveIsZeroButLevelSetsKeepTheirInside) {
-  openvdb::initialize();
   auto grid = block<openvdb::FloatGrid>("v", kBox, [](auto) { return 3.0f; });
   openvdb::tools::changeBackground(grid->tree(), 7.0f);
   grid->tree().setActiveState(openvdb::Coord(0, 5, 35), false);
@@ -89,7 +85,6 @@ TEST(Slice, InactiveIsZeroButLevelSetsKeepTheirInside) {
 }
 
 TEST(Slice, VectorsHaveThreeChannels) {
-  openvdb::initialize();
   const auto make = [](const std::string& name) {
     return block<openvdb::Vec3SGrid>(name, kBox,
                                      [](auto c) { return openvdb::Vec3f(c.x(), c.y(), c.z()); });
@@ -114,7 +109,6 @@ TEST(Slice, PositionsGoBothWays) {
 }
 
 TEST(Slice, RefusesWhatCannotBeSliced) {
-  openvdb::initialize();
   EXPECT_THROW(sliceFrame({}, 2), DataError);
   const auto grid = coded();
   const auto other = grid->deepCopy();

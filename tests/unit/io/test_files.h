@@ -44,6 +44,7 @@ class FullDisk {
 
 // Level set of a ball about `centre` (index space), half width 3.
 inline openvdb::FloatGrid::Ptr ball(double radius, openvdb::Vec3d centre, double voxel) {
+  openvdb::initialize();
   auto grid = openvdb::FloatGrid::create(static_cast<float>(3 * voxel));
   grid->setName("surface");
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -68,12 +69,34 @@ inline openvdb::FloatGrid::Ptr ball(double radius, openvdb::Vec3d centre, double
 template <class Grid, class Fill>
 typename Grid::Ptr block(const std::string& name, openvdb::CoordBBox box, const Fill& fill,
                          double voxel = 1) {
+  openvdb::initialize();
   auto grid = Grid::create();
   grid->setName(name);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
   auto accessor = grid->getAccessor();
   for (auto at = box.begin(); at != box.end(); ++at) accessor.setValue(*at, fill(*at));
   return grid;
+}
+
+// 18 x 8 x 12 voxels, and grids on it of voxels of 0.5.
+inline const openvdb::CoordBBox kBox(openvdb::Coord(-5, 2, 30), openvdb::Coord(12, 9, 41));
+
+inline float scalarAt(const openvdb::Coord& c) {
+  return float(c.x() + 100 * c.y()) + 0.125f * float(c.z());
+}
+
+inline openvdb::FloatGrid::Ptr scalar(const std::string& name = "jacobian") {
+  return block<openvdb::FloatGrid>(name, kBox, scalarAt, 0.5);
+}
+
+// Each voxel's own indices.
+template <class Grid = openvdb::Vec3SGrid>
+typename Grid::Ptr vectors(const std::string& name, const openvdb::CoordBBox& box = kBox) {
+  using Number = typename Grid::ValueType::ValueType;
+  return block<Grid>(
+      name, box,
+      [](auto c) { return typename Grid::ValueType(Number(c.x()), Number(c.y()), Number(c.z())); },
+      0.5);
 }
 
 }  // namespace innermap::test

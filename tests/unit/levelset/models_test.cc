@@ -13,7 +13,7 @@ namespace {
 class Models : public testing::TestWithParam<const char*> {};
 
 TEST_P(Models, LevelSetHoldsTheSolid) {
-  const std::string path = std::string(INNERMAP_MODELS) + "/" + GetParam();
+  const std::string path = (std::filesystem::path(INNERMAP_MODELS) / GetParam()).string();
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   const Solid solid(readMesh(path));
   const LevelSetCheck check = checkLevelSet(*makeLevelSet(solid, {.resolution = 128}), solid);

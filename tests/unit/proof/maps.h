@@ -5,22 +5,14 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "field/affine_map.h"
 #include "innermap/field/harmonic_field.h"
 #include "solve/points.h"
 
 namespace innermap::testing {
 
-inline Affine affineOf(const Mat3& a, const Vec3& shift = {}) {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int k = 0; k < 3; ++k) {
-    affine.coefficients(0, k) = shift[k];
-    for (int c = 0; c < 3; ++c) affine.coefficients(1 + c, k) = a[k][c];
-  }
-  return affine;
-}
-
-inline constexpr Mat3 kIdentity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+using test::affineOf;
+using test::kIdentity;
 
 struct Charge {
   Vec3 place, weight;

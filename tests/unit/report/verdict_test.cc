@@ -2,24 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include "field/affine_map.h"
 #include "innermap/core/error.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
 namespace {
 
-HarmonicMap identity() {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (std::size_t a = 0; a < 3; ++a) affine.coefficients(1 + a, a) = 1;
-  return HarmonicMap(HarmonicField({}, Matrix(0, 3), affine));
-}
-
 MappedSolid mapOf(double p99, double tolerance) {
   const Mesh ball = shapes::icosphere(1);
   Facts facts = factsOf({.p99 = p99});
   for (const auto& fact : factsOfTolerance(tolerance, p99, p99 <= tolerance)) facts.push_back(fact);
-  MappedSolid out{identity(), makeBoundaryPair(ball, ball), facts, {}};
+  MappedSolid out{test::affineMap(test::kIdentity), makeBoundaryPair(ball, ball), facts, {}};
   out.injectivity.inside.checked = 1000;
   return out;
 }

@@ -246,10 +246,7 @@ TEST(PushDensity, NeighboursThatPartLeaveNothingBetween) {
   Matrix weights(charges.size(), 3);
   for (std::size_t i = 0; i < charges.size(); ++i)
     weights(i, 0) = signs[i] * 0.5 * kAcross * kAcross / (4 * kPi * 0.4 * kGap) * 2;
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
-  const HarmonicMap map(HarmonicField(charges, weights, affine));
+  const HarmonicMap map(HarmonicField(charges, weights, affineOf(kIdentity)));
   Mesh pair = shapes::box({-1, -0.5, -0.5}, {-kGap, 0.5, 0.5});
   const Mesh right = shapes::box({kGap, -0.5, -0.5}, {1, 0.5, 0.5});
   const int first = static_cast<int>(pair.vertices.size());

@@ -33,17 +33,6 @@ inline Mat3 rotation(double a, double b) {
   return product(x, z);
 }
 
-// Identity and three charges outside the cube [-1, 1]^3: one-to-one there, no part of it affine.
-inline HarmonicMap chargedMap(double strength = 0.3) {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
-  Matrix weights(3, 3);
-  for (int i = 0; i < 9; ++i) weights.data()[i] = strength * std::sin(i + 1.0);
-  return HarmonicMap(
-      HarmonicField({{2.4, 0.3, 0}, {-0.2, 2.6, 0.4}, {0.3, 0.2, -2.5}}, weights, affine));
-}
-
 // Evenly spread points of a sphere about the origin.
 inline Points spherePoints(std::size_t count, double radius) {
   Points out(count);

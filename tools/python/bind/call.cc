@@ -197,6 +197,10 @@ void requireMemory(const MemoryNeed& need) {
   innermap::requireMemory(need, processMemory(0), memoryLimit(), asCalled);
 }
 
+void warn(const std::string& text) {
+  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 void runCall(const CallOptions& options, const std::function<void()>& work) {
   CallRun run;
   run.setMaxMemory(options.maxMemory);
@@ -223,9 +227,7 @@ void runCall(const CallOptions& options, const std::function<void()>& work) {
   if (!error) look(run, options.progress);
   run.rethrow();
   if (error) std::rethrow_exception(error);
-  if (run.endedByTime() &&
-      PyErr_WarnEx(PyExc_RuntimeWarning, "stopped by max_time: another call may differ", 1) != 0)
-    throw py::error_already_set();
+  if (run.endedByTime()) warn("stopped by max_time: another call may differ");
 }
 
 }  // namespace innermap::python

@@ -54,6 +54,9 @@ auto call(const CallOptions& options, Work&& work) -> decltype(work()) {
 // Within a call: throws MemoryError where a job would take the process over the call's limit.
 void requireMemory(const MemoryNeed& need);
 
+// A RuntimeWarning of Python, which may be an error there. With the lock.
+void warn(const std::string& text);
+
 // For work that is over at once: with the lock released. Gives None.
 template <class Work>
 pybind11::object withoutLock(Work&& work) {

@@ -1,6 +1,9 @@
 // deform(): what is inside, through the frames of an animation.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "bind/arrays.h"
 #include "bind/carry_options.h"
 #include "bind/deformer.h"
@@ -18,6 +21,8 @@ namespace py = pybind11;
 
 namespace innermap::python {
 namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct DeformOptions : CarryOptions {
   FittingOptions fitting;
@@ -71,7 +76,7 @@ py::object Deformation::grids(const py::object& what,
       takeGrids(what, "inside", textsFrom(o_.grids, "grids"), o_.call);
   FrameCarry how{o_.carry(), outside_, {}, o_.velocity, o_.fitting.animation.framesPerSecond,
                  o_.shutter};
-  std::vector<PushResult> results;
+  std::vector<PushResult> results;  // of frames that are not left out
   const FrameTable made = call(o_.call, [&]() {
     how.output = carriedVoxels(given, o_.lattice);
     requireNoVelocity(how, given, o_.names, "inside", asCalled);
@@ -81,6 +86,7 @@ py::object Deformation::grids(const py::object& what,
     const FramePusher pusher(fitter, given, pushSettings(how));
     return frames_.table(fitter, [&](const FittedFrame& frame) {
       PushResult result = pusher.push(frame.fit, carriedFields(how, frame.all, frame.index)).result;
+      frame.warnings.insert(frame.warnings.end(), result.warnings.begin(), result.warnings.end());
       Figures row = rowOf(*frame.fit.fit);
       row.emplace_back("inverted_fraction", result.statistics.invertedInside(), "inverted");
       row.emplace_back("voxels", result.statistics.voxels, "voxels");
@@ -96,9 +102,14 @@ py::object Deformation::grids(const py::object& what,
   const py::dict figures = made.dict();
   if (pattern) return figures;
   py::list out;
-  for (PushResult& result : results) {
-    const py::dict totals = totalsOf(result);
-    out.append(gridsObject(std::move(result.grids), totals, o_.call));
+  auto result = results.begin();
+  for (const std::string& error : made.error) {
+    if (!error.empty()) {
+      out.append(py::none());
+      continue;
+    }
+    const py::dict totals = totalsOf(*result);
+    out.append(gridsObject(std::move((result++)->grids), totals, o_.call));
   }
   return std::move(out);
 }
@@ -113,15 +124,18 @@ py::object Deformation::points(const Points& points) const {
       places.push_back(placesOf(pusher.push(HarmonicMap(fit.field), placed, false)));
     });
   });
-  for (std::size_t i = 0; i < made.error.size(); ++i)
-    if (!made.error[i].empty())
-      throw DataError(fmt::format("frame {}: {}", made.frame[i], made.error[i]));
-  py::array_t<double> out({static_cast<py::ssize_t>(places.size()),
+  made.tell();
+  py::array_t<double> out({static_cast<py::ssize_t>(made.frame.size()),
                            static_cast<py::ssize_t>(points.size()), py::ssize_t(3)});
   double* to = out.mutable_data();
-  for (const Points& frame : places)
-    for (const Vec3& p : frame)
-      for (int axis = 0; axis < 3; ++axis) *to++ = p[axis];
+  auto frame = places.begin();
+  for (const std::string& error : made.error)
+    if (!error.empty()) {
+      to = std::fill_n(to, 3 * points.size(), kNone);
+    } else {
+      for (const Vec3& p : *frame++)
+        for (int axis = 0; axis < 3; ++axis) *to++ = p[axis];
+    }
   return py::make_tuple(out, foundOf(placed));
 }
 
@@ -169,14 +183,16 @@ void bindDeform(py::module_& m) {
        "Carries volumes or geometry inside a rest pose through the frames of an "
        "animation.\n\nsource: the rest pose, a mesh: (V, F), a path, an innermap.Mesh, or that of "
        "a glTF file. inside: points (n, 3), which come back as (places (frames, n, 3), found "
-       "(n,)), NaN where a point lies too far outside; an innermap.Grids or the path of a .vdb "
-       "file, which come back as a list of Grids, or are written to output and figures come back; "
-       "or the path of a file of geometry (.obj, .ply, ..., .vtu, .msh), written to output. "
-       "frames: paths, a pattern ('walk.*.obj'), a point cache (.mdd, .pc2), glTF (.glb, .gltf), "
-       "or an array of each frame's vertices. output: a path with #### or %04d for the frame's "
-       "number. Figures are a dict of columns: frame, boundary_rms and so on, error, the text of "
-       "what was wrong with a frame that is left out. All frames are made, also those whose output "
-       "is there. Raises DataError, FileError, MemoryError."},
+       "(n,)), NaN where a point lies too far outside and in a frame that is left out; an "
+       "innermap.Grids or the path of a .vdb file, which come back as a list of Grids, None for a "
+       "frame that is left out, or are written to output and figures come back; or the path of a "
+       "file of geometry (.obj, .ply, ..., .vtu, .msh), written to output. frames: paths, a "
+       "pattern ('walk.*.obj'), a point cache (.mdd, .pc2), glTF (.glb, .gltf), or an array of "
+       "each frame's vertices. output: a path with #### or %04d for the frame's number. Figures "
+       "are a dict of columns: frame, boundary_rms and so on, error, the text of what was wrong "
+       "with a frame that is left out. A RuntimeWarning says of each frame what makes it doubtful, "
+       "or that it is left out. All frames are made, also those whose output is there. Raises "
+       "DataError where no frame can be used, FileError, MemoryError."},
       deform);
 }
 

@@ -105,7 +105,9 @@ py::object carry(const Arguments& a, CallOptions& o) {
 py::object measure(const Arguments& a, CallOptions& o) {
   const auto self = py::cast<std::shared_ptr<PyDeformer>>(a[0]);
   const Mesh frame = frameFrom(*self, a[1]);
-  return dictOf(call(o, [&] { return rowOf(self->carrier.fitter.fit(frame)); }));
+  const FrameFit fit = call(o, [&] { return self->carrier.fitter.fit(frame); });
+  for (const std::string& warning : fit.warnings) warn(warning);
+  return dictOf(rowOf(fit));
 }
 
 struct LatticeOptions {

@@ -64,8 +64,12 @@ Mesh FrameSet::mesh(std::size_t index) const {
 
 FrameTable FrameSet::table(const FrameFitter& fitter,
                            const std::function<Figures(const FittedFrame&)>& each) const {
-  FrameFits fits = frameFits(fitter, numbers_, [&](std::size_t index) { return mesh(index); });
   FrameTable out;
+  FrameFits fits = frameFits(
+      fitter, numbers_, [&](std::size_t index) { return mesh(index); },
+      [&](std::size_t index, const Mesh&, const FrameFit& fit) {
+        out.warnings.try_emplace(numbers_[index], fit.warnings);
+      });
   Figures row;
   FrameWatch watch;
   watch.ended = [&](std::size_t index, const FrameResult& result) {
@@ -73,7 +77,7 @@ FrameTable FrameSet::table(const FrameFitter& fitter,
   };
   eachFrame(wanted_, watch, [&](std::size_t index) {
     const std::shared_ptr<const FrameFit> fit = fits.at(index);
-    row = each({index, {fit.get(), numbers_[index]}, fits});
+    row = each({index, {fit.get(), numbers_[index]}, fits, out.warnings[numbers_[index]]});
   });
   return out;
 }
@@ -135,8 +139,20 @@ void FrameTable::add(std::int64_t number, const Figures& row, const std::string&
   for (auto& [name, values] : texts) values.resize(frame.size());
 }
 
-py::dict FrameTable::dict() const {
+void FrameTable::tell() const {
   requireOneGood(error);
+  for (const std::string& text : general) warn(text);
+  std::map<std::int64_t, std::string> said;
+  for (const auto& [number, doubts] : warnings)
+    if (!doubts.empty())
+      said[number] = frameWarning(number, fmt::format("{}", fmt::join(doubts, "; ")));
+  for (std::size_t i = 0; i < error.size(); ++i)
+    if (!error[i].empty()) said[frame[i]] = frameLeftOut(frame[i], error[i]);
+  for (const auto& [number, text] : said) warn(text);
+}
+
+py::dict FrameTable::dict() const {
+  tell();
   py::dict out;
   out["frame"] = arrayOf(frame);
   for (const auto& [name, values] : columns) out[name.c_str()] = arrayOf(values);

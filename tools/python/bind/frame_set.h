@@ -38,10 +38,15 @@ struct FrameTable {
   std::vector<std::string> error;
   std::map<std::string, std::vector<double>> columns;
   std::map<std::string, std::vector<std::string>> texts;
+  std::vector<std::string> general;                           // warnings of no single frame
+  std::map<std::int64_t, std::vector<std::string>> warnings;  // by a frame's number
 
   // Figures that are not known in any frame have no column.
   void add(std::int64_t number, const Figures& row, const std::string& broken);
-  // Throws DataError where no frame could be used.
+  // Warns in Python, once a frame, of what makes it doubtful or why it is left out. Throws
+  // DataError where no frame could be used.
+  void tell() const;
+  // The same, and the columns.
   pybind11::dict dict() const;
 };
 
@@ -53,6 +58,7 @@ struct FittedFrame {
   std::size_t index;
   NumberedFit fit;
   FrameFits& all;
+  std::vector<std::string>& warnings;  // of it
 };
 
 // From files or from arrays.

@@ -61,7 +61,7 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
     requireMemory(sequenceNeed(o.fitting.fitting, boundary.solid, settings));
     const FrameFitter fitter(std::move(boundary), o.fitting.fitting);
     const FrameEvaluator evaluator(fitter, names, settings);
-    return frames.table(fitter, [&](const FittedFrame& frame) {
+    FrameTable out = frames.table(fitter, [&](const FittedFrame& frame) {
       const MapGrids grids = evaluator.evaluate(*frame.fit.fit);
       VdbWriteSettings writing;
       writing.names = o.names;
@@ -69,6 +69,8 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
         writeVdb(pattern->path(frame.fit.number), evaluator.grids(frame.fit, grids), {}, writing);
       return measuresOf(*frame.fit.fit, grids);
     });
+    out.general = evaluator.warnings();
+    return out;
   });
   return made.dict();
 }
@@ -83,7 +85,9 @@ void bindSequence(py::module_& m) {
        "program's energies.csv has them: frame, harmonic (3 for a rigid motion), deformation (0 "
        "for one), deformation_mean, boundary_rms, boundary_p99, boundary_max (fractions of the "
        "frame's diagonal), jacobian_min, jacobian_max, folded_fraction, outside_fraction, volume "
-       "(world units cubed), error: why a frame could not be used; its figures are then NaN. With "
+       "(world units cubed), error: why a frame could not be used; its figures are then NaN. A "
+       "RuntimeWarning says of each "
+       "frame what makes it doubtful, or that it is left out. With "
        "prove also the proofs of each map, named as in Map.prove(), and statement: proofs and "
        "checks in words.\n\nsource and frames as deform() takes them. Raises DataError where no "
        "frame can be used, FileError, MemoryError."},

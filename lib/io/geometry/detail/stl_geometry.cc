@@ -23,7 +23,7 @@ class StlGeometry : public GeometryFile {
       std::uint32_t count = 0;
       for (const std::uint8_t stays : carried.stays) count += stays;
       copy.to(StlScanner::kHeader - sizeof count);
-      out.raw({reinterpret_cast<const char*>(&count), sizeof count});
+      out.number(count);
       copy.skipTo(StlScanner::kHeader);
     }
     for (std::size_t t = 0; stl.next(); ++t) {
@@ -32,7 +32,7 @@ class StlGeometry : public GeometryFile {
         copy.to(stl.span(k).begin);
         const Vec3& p = k == 0 ? carried.directions[0][t] : carried.points.points[3 * t + k - 1];
         if (stl.binary())
-          for (int a = 0; a < 3; ++a) putFloat(out, p[a]);
+          for (int a = 0; a < 3; ++a) out.number(static_cast<float>(p[a]));
         else
           out.print(" {} {} {}", p.x, p.y, p.z);
         copy.skipTo(stl.span(k).end);
@@ -44,11 +44,6 @@ class StlGeometry : public GeometryFile {
   }
 
  private:
-  static void putFloat(OutputBuffer& out, double value) {
-    const auto number = static_cast<float>(value);
-    out.raw({reinterpret_cast<const char*>(&number), sizeof number});
-  }
-
   void addTriangle(const StlScanner& stl) {
     requireCountable(file_.path, geometry.points.size() + 3);
     Corner at[3];

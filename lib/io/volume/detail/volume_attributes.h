@@ -42,6 +42,7 @@ struct VolumeGrid {
   std::string activeChannel;           // or empty
 
   bool isVector() const { return channels.size() == 3; }
+  std::size_t channelCount() const { return channels.size() + (activeChannel.empty() ? 0 : 1); }
 };
 
 // Puts all attributes but volumeSliceIndex.

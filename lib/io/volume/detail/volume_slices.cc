@@ -7,10 +7,6 @@
 namespace innermap {
 namespace {
 
-std::size_t channelsOf(const VolumeGrid& grid) {
-  return grid.channels.size() + (grid.activeChannel.empty() ? 0 : 1);
-}
-
 // One row of the grids first ... end - 1.
 PixelCounts sampleRow(const VolumePlan& plan, std::size_t first, std::size_t end, int slice,
                       int row, SliceValues& values) {
@@ -20,7 +16,8 @@ PixelCounts sampleRow(const VolumePlan& plan, std::size_t first, std::size_t end
   for (std::size_t g = first; g < end; ++g) {
     const VolumeGrid& grid = plan.grids[g];
     double* outputs[4] = {};
-    for (std::size_t c = 0; c < channelsOf(grid); ++c) outputs[c] = values[channel++].data() + at;
+    for (std::size_t c = 0; c < grid.channelCount(); ++c)
+      outputs[c] = values[channel++].data() + at;
     double* active = grid.activeChannel.empty() ? nullptr : outputs[grid.channels.size()];
     const PixelCounts c = plan.samplers[g]->row(plan.lattice, slice, row, outputs, active);
     counts.clamped += c.clamped;
@@ -36,7 +33,7 @@ PixelCounts forSlices(const VolumePlan& plan, std::size_t first, std::size_t end
                       const std::function<void(int slice, const SliceValues& values)>& use) {
   const VolumeLattice& lattice = plan.lattice;
   std::size_t channels = 0;
-  for (std::size_t g = first; g < end; ++g) channels += channelsOf(plan.grids[g]);
+  for (std::size_t g = first; g < end; ++g) channels += plan.grids[g].channelCount();
   const auto rows = static_cast<std::size_t>(lattice.height());
   const auto width = static_cast<std::size_t>(lattice.width());
   SliceValues values(channels, std::vector<double>(rows * width));

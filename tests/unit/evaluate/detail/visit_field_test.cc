@@ -7,6 +7,7 @@
 #include "core/expect.h"
 #include "core/random.h"
 #include "evaluate/active_region.h"
+#include "field/affine_map.h"
 #include "innermap/core/error.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
@@ -16,8 +17,7 @@ namespace {
 
 // Two channels: 2 x + 1, and one over the distance from a point outside the ball.
 HarmonicField twoChannels() {
-  Affine affine;
-  affine.coefficients = Matrix(4, 2);
+  Affine affine{{}, Matrix(4, 2)};
   affine.coefficients(0, 0) = 1;
   affine.coefficients(1, 0) = 2;
   Matrix weights(1, 2);
@@ -40,12 +40,9 @@ struct Scene {
 // A map in two steps: values and gradients are those of its evaluation at points, outside too.
 TEST(VisitField, MapsInSteps) {
   const Scene scene;
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (std::size_t k = 0; k < 3; ++k) affine.coefficients(1 + k, k) = 1;
   Matrix weights(1, 3);
   weights(0, 1) = 0.2;
-  const HarmonicMap step(HarmonicField({{0, 0, 1.6}}, weights, affine));
+  const HarmonicMap step(HarmonicField({{0, 0, 1.6}}, weights, test::affineOf(test::kIdentity)));
   const ComposedMap map({step, step});
   std::atomic<std::size_t> visited{0};
   std::vector<double> error(scene.region->tree().leafCount(), 0);

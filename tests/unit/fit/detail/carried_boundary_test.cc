@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "field/affine_map.h"
 #include "fit/detail/inside_check.h"
 #include "fit/test_pairs.h"
 
@@ -12,15 +13,9 @@ namespace {
 
 // p -> p + shift, and what a charge at (0, 0, 2) adds.
 HarmonicMap bending(const Vec3& shift, double weight) {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) {
-    affine.coefficients(0, r) = shift[r];
-    affine.coefficients(1 + r, r) = 1;
-  }
   Matrix weights(1, 3);
   weights(0, 0) = weight;
-  return HarmonicMap(HarmonicField({{0, 0, 2}}, weights, affine));
+  return HarmonicMap(HarmonicField({{0, 0, 2}}, weights, test::affineOf(test::kIdentity, shift)));
 }
 
 // By fixed point iterations: of maps that are a shift and a little more.

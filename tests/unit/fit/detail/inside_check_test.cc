@@ -7,20 +7,11 @@
 #include <cmath>
 
 #include "core/pi.h"
+#include "field/affine_map.h"
 #include "fit/test_pairs.h"
 
 namespace innermap {
 namespace {
-
-HarmonicMap affine(const Vec3& diagonal, const Vec3& shift = {}) {
-  Affine a;
-  a.coefficients = Matrix(4, 3);
-  for (std::size_t k = 0; k < 3; ++k) {
-    a.coefficients(0, k) = shift[static_cast<int>(k)];
-    a.coefficients(1 + k, k) = diagonal[static_cast<int>(k)];
-  }
-  return HarmonicMap(HarmonicField({}, Matrix(0, 3), a));
-}
 
 TEST(InsideCheck, PointsFillTheSolid) {
   const Solid ball(shapes::icosphere(4));
@@ -65,8 +56,9 @@ TEST(InsideCheck, TheBoxOfANeedleIsNotLookedThrough) {
 
 TEST(InsideCheck, DeterminantsMultiply) {
   const Points points{{0, 0, 0}, {0.5, 0.25, 0}};
-  MappedPoints here = mapPoints(affine({2, 1, 1}, {1, 0, 0}), {points, {}}, 1e-9);
-  here = mapPoints(affine({1, -3, 1}), here, 1e-9);
+  MappedPoints here = mapPoints(test::affineMap({{{2, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {1, 0, 0}),
+                                {points, {}}, 1e-9);
+  here = mapPoints(test::affineMap({{{1, 0, 0}, {0, -3, 0}, {0, 0, 1}}}), here, 1e-9);
   EXPECT_NEAR(here.determinants[1], -6, 1e-12);
   EXPECT_LT(norm(here.points[1] - Vec3{2, -0.75, 0}), 1e-12);
   EXPECT_EQ(foldedShare(here.determinants, 1), 1);

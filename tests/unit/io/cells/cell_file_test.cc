@@ -211,18 +211,13 @@ TEST(CellFile, VtuAsTextAndItsOtherCells) {
   EXPECT_EQ(file.mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}}));
   EXPECT_EQ(file.mesh.vertexFields[0].kind, CellField::Kind::vector);
   ASSERT_EQ(file.notes.size(), 1u);
-  write(path, text("14", "1"));
-  expectError(path, "pyramids");
-  write(path, text("24", "1"));
-  expectError(path, "higher order");
-  write(path, text("12", "1"));
-  expectError(path, "has 4 corners");
-  write(path, text("10", "nan"));
-  expectError(path, "not finite");
-  write(path, text("10", "x"));
-  expectError(path, "line 7");
-  write(path, text("10", "1 1"));
-  expectError(path, "13 numbers");
+  const char* const cases[][3] = {{"14", "1", "pyramids"},      {"24", "1", "higher order"},
+                                  {"12", "1", "has 4 corners"}, {"10", "nan", "not finite"},
+                                  {"10", "x", "line 7"},        {"10", "1 1", "13 numbers"}};
+  for (const auto& [type, extra, says] : cases) {
+    write(path, text(type, extra));
+    expectError(path, says);
+  }
 }
 
 TEST(CellFile, HangingVerticesAreCounted) {

@@ -10,7 +10,6 @@ namespace innermap {
 namespace {
 
 TEST(ExrInfo, BadFilesAreFileErrors) {
-  openvdb::initialize();
   const test::TemporaryFolder folder;
   const auto grid = test::block<openvdb::FloatGrid>(
       "v", openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(9)), [](auto) { return 1.0f; });
@@ -31,7 +30,6 @@ TEST(ExrInfo, BadFilesAreFileErrors) {
 
 // OpenEXR reads what it knows by its type and the rest by its length, and allocates first.
 TEST(ExrInfo, LengthsOfAttributes) {
-  openvdb::initialize();
   const test::TemporaryFolder folder;
   const auto grid = test::block<openvdb::FloatGrid>(
       "v", openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(9)), [](auto) { return 1.0f; });

@@ -22,16 +22,7 @@ namespace {
 
 using namespace test;
 
-const openvdb::CoordBBox kBox(openvdb::Coord(-5, 2, 30), openvdb::Coord(12, 9, 41));
-
-openvdb::GridPtrVec twoGrids() {
-  openvdb::initialize();
-  return {block<openvdb::FloatGrid>(
-              "jacobian", kBox, [](auto c) { return float(c.x() + 100 * c.y()) + 0.125f * c.z(); },
-              0.5),
-          block<openvdb::Vec3SGrid>(
-              "map", kBox, [](auto c) { return openvdb::Vec3f(c.x(), c.y(), c.z()); }, 0.5)};
-}
+openvdb::GridPtrVec twoGrids() { return {scalar(), vectors("map")}; }
 
 std::vector<float> channel(Imf::MultiPartInputFile& file, int part, const std::string& name,
                            std::size_t columns, std::size_t rows) {
@@ -95,7 +86,6 @@ TEST(ExrSlices, NeedsNoMaskBesideADensity) {
 }
 
 TEST(ExrSlices, HalfFloatsAreClampedAndCounted) {
-  openvdb::initialize();
   const TemporaryFolder folder;
   auto grid = block<openvdb::FloatGrid>("v", kBox, [](auto) { return 1.5f; });
   grid->tree().setValue(openvdb::Coord(0, 4, 35), 1e6f);

@@ -19,25 +19,22 @@ namespace {
 using namespace test;
 using openvdb::Coord;
 
-const openvdb::CoordBBox kBox(Coord(-5, 2, 30), Coord(4, 9, 41));
+const openvdb::CoordBBox kSmall(Coord(-5, 2, 30), Coord(4, 9, 41));
 
 openvdb::Int32Grid::Ptr labels() {
-  openvdb::initialize();
   return block<openvdb::Int32Grid>(
-      "label", kBox, [](auto c) { return 614454277 + c.x(); }, 0.5);
+      "label", kSmall, [](auto c) { return 614454277 + c.x(); }, 0.5);
 }
 
 TEST(Nifti, GridsComeBackWithTypesNamesAndPlaces) {
   const TemporaryFolder folder;
-  openvdb::initialize();
-  const auto vectors = block<openvdb::Vec3SGrid>(
-      "v", kBox, [](auto c) { return openvdb::Vec3s(float(c.x()), float(c.y()), float(c.z())); });
+  const auto field = vectors("v", kSmall);
   for (const char* name : {"a.nii", "a.nii.gz"}) {
     const std::string path = folder.file(name);
     for (const openvdb::GridBase::Ptr& grid : openvdb::GridPtrVec{
-             labels(), vectors,
-             block<openvdb::DoubleGrid>("d", kBox, [](auto c) { return 0.1 * c.x(); }),
-             block<openvdb::Int64Grid>("far", kBox,
+             labels(), field,
+             block<openvdb::DoubleGrid>("d", kSmall, [](auto c) { return 0.1 * c.x(); }),
+             block<openvdb::Int64Grid>("far", kSmall,
                                        [](auto c) { return (std::int64_t(1) << 40) + c.x(); })}) {
       writeVolumeTexture(path, {grid});
       const VolumeTextureContents back = readVolumeTexture(path);
@@ -45,7 +42,7 @@ TEST(Nifti, GridsComeBackWithTypesNamesAndPlaces) {
       EXPECT_EQ(back.format, "NIfTI");
       EXPECT_EQ(back.grids[0]->getName(), grid->getName());
       EXPECT_EQ(back.grids[0]->valueType(), grid->valueType());
-      EXPECT_EQ(back.resolution, kBox.dim());
+      EXPECT_EQ(back.resolution, kSmall.dim());
       const auto there = grid->indexToWorld(openvdb::Vec3d(-5 + 1, 2 + 2, 30 + 3));
       EXPECT_LT((back.grids[0]->indexToWorld(openvdb::Vec3d(1, 2, 3)) - there).length(), 1e-5);
     }
@@ -54,33 +51,32 @@ TEST(Nifti, GridsComeBackWithTypesNamesAndPlaces) {
   const auto back =
       openvdb::gridPtrCast<openvdb::Int32Grid>(readVolumeTexture(folder.file("l.nii")).grids[0]);
   const auto accessor = back->getConstAccessor();
-  for (auto at = kBox.begin(); at != kBox.end(); ++at)
-    ASSERT_EQ(accessor.getValue(*at - kBox.min()), 614454277 + (*at).x());
+  for (auto at = kSmall.begin(); at != kSmall.end(); ++at)
+    ASSERT_EQ(accessor.getValue(*at - kSmall.min()), 614454277 + (*at).x());
 }
 
 // ITK's axes: x to the left, y to the back; 0 where nothing is active; the grid stays as it was.
 TEST(Nifti, DisplacementFieldsAreOfITK) {
   const TemporaryFolder folder;
-  openvdb::initialize();
   const auto field = block<openvdb::Vec3SGrid>(
-      "displacement", kBox,
+      "displacement", kSmall,
       [](auto c) { return openvdb::Vec3s(float(c.x()), float(2 * c.y()), float(3 * c.z())); }, 0.5);
-  field->tree().setValueOff(kBox.min());
+  field->tree().setValueOff(kSmall.min());
   const std::string path = folder.file("field.nii.gz");
   writeDisplacementField(path, *field);
   const auto back = openvdb::gridPtrCast<openvdb::Vec3SGrid>(readVolumeTexture(path).grids.front());
   const auto accessor = back->getConstAccessor();
-  for (auto at = kBox.begin(); at != kBox.end(); ++at) {
+  for (auto at = kSmall.begin(); at != kSmall.end(); ++at) {
     const Coord c = *at;
-    const openvdb::Vec3s v = accessor.getValue(c - kBox.min());
-    if (c == kBox.min())
+    const openvdb::Vec3s v = accessor.getValue(c - kSmall.min());
+    if (c == kSmall.min())
       ASSERT_EQ(v, openvdb::Vec3s(0));
     else
       ASSERT_EQ(v, openvdb::Vec3s(float(-c.x()), float(-2 * c.y()), float(3 * c.z())));
   }
-  EXPECT_EQ(
-      field->getConstAccessor().getValue(kBox.max()),
-      openvdb::Vec3s(float(kBox.max().x()), float(2 * kBox.max().y()), float(3 * kBox.max().z())));
+  EXPECT_EQ(field->getConstAccessor().getValue(kSmall.max()),
+            openvdb::Vec3s(float(kSmall.max().x()), float(2 * kSmall.max().y()),
+                           float(3 * kSmall.max().z())));
 }
 
 TEST(Nifti, DamagedFilesAreRefusedOrRead) {

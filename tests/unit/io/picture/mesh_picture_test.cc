@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "core/expect.h"
+#include "field/affine_map.h"
 #include "innermap/core/error.h"
 #include "innermap/fit/boundary_pair.h"
 #include "innermap/io/pictures.h"
@@ -134,11 +135,7 @@ TEST(CorrespondencePicture, ShowsPlacesByColour) {
 
 // A cube that each step moves by a little.
 MappedSolid inSteps(int steps) {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  affine.coefficients(0, 0) = 0.1;
-  for (std::size_t r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
-  const HarmonicMap step(HarmonicField({}, Matrix(0, 3), affine));
+  const HarmonicMap step = test::affineMap(test::kIdentity, {0.1, 0, 0});
   const Mesh cube = shapes::box({-1, -1, -1}, {1, 1, 1});
   return {ComposedMap(std::vector<HarmonicMap>(static_cast<std::size_t>(steps), step)),
           makeBoundaryPair(cube, cube),

@@ -13,7 +13,6 @@ using namespace test;
 
 // A ball whose value grows along x from -1 to 1 inside, with a skin of 2 voxels.
 openvdb::GridPtrVec scene(double voxel = 0.1) {
-  openvdb::initialize();
   const auto surface = ball(20, openvdb::Vec3d(0, 0, 0), voxel);
   const auto jacobian = openvdb::FloatGrid::create();
   jacobian->setName("jacobian");
@@ -100,7 +99,6 @@ TEST(SectionImage, PlaceAndRangeCanBeGiven) {
 }
 
 TEST(SectionImage, ConstantsVectorsAndNaNsWork) {
-  openvdb::initialize();
   const TemporaryFolder folder;
   const openvdb::CoordBBox box(openvdb::Coord(0), openvdb::Coord(9));
   const auto constant = block<openvdb::FloatGrid>("c", box, [](auto) { return 5.0f; });

@@ -18,10 +18,7 @@ namespace {
 
 using namespace test;
 
-const openvdb::CoordBBox kBox(openvdb::Coord(-5, 2, 30), openvdb::Coord(12, 9, 41));
-
 openvdb::GridPtrVec everyType() {
-  openvdb::initialize();
   const auto sum = [](const openvdb::Coord& c) { return c.x() + 100 * c.y() - 7 * c.z(); };
   openvdb::GridPtrVec grids;
   grids.push_back(ball(9.5, openvdb::Vec3d(3, 4, 5), 0.25));
@@ -168,7 +165,6 @@ TEST(VdbFileNames, ReadsOnlyWhatIsAskedFor) {
 }
 
 TEST(VdbFileNames, RenamesForBlenderAndLeavesTheGridsAlone) {
-  openvdb::initialize();
   const TemporaryFolder folder;
   const auto colour =
       block<openvdb::Vec3SGrid>("Cd", kBox, [](auto) { return openvdb::Vec3f(1, 0, 0); });
@@ -182,7 +178,6 @@ TEST(VdbFileNames, RenamesForBlenderAndLeavesTheGridsAlone) {
 }
 
 TEST(VdbFileNames, RefusesNamesThatProgramsConfuse) {
-  openvdb::initialize();
   const TemporaryFolder folder;
   const auto make = [](const std::string& name) {
     return block<openvdb::FloatGrid>(name, kBox, [](auto) { return 1.0f; });

@@ -19,27 +19,12 @@ namespace {
 using namespace test;
 using openvdb::Coord;
 
-const openvdb::CoordBBox kBox(Coord(-5, 2, 30), Coord(12, 9, 41));
-
 openvdb::FloatGrid::Ptr density() {
-  openvdb::initialize();
   auto grid = block<openvdb::FloatGrid>(
       "density", kBox, [](Coord c) { return float(c.x()) + 0.125f * float(c.z()); }, 0.5);
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->tree().addTile(1, Coord(64, 0, 0), 7.5f, true);
   return grid;
-}
-
-template <class Grid>
-typename Grid::Ptr vectors(const std::string& name) {
-  return block<Grid>(
-      name, kBox,
-      [](auto c) {
-        return typename Grid::ValueType(typename Grid::ValueType::ValueType(c.x()),
-                                        typename Grid::ValueType::ValueType(c.y()),
-                                        typename Grid::ValueType::ValueType(c.z()));
-      },
-      0.5);
 }
 
 using Handles = std::vector<nanovdb::GridHandle<nanovdb::HostBuffer>>;

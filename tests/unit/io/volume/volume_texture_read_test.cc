@@ -25,14 +25,6 @@ namespace {
 using namespace test;
 using openvdb::Coord;
 
-const openvdb::CoordBBox kBox(Coord(-5, 2, 30), Coord(12, 9, 41));  // 18 x 8 x 12
-
-openvdb::FloatGrid::Ptr scalar(const std::string& name = "v") {
-  openvdb::initialize();
-  return block<openvdb::FloatGrid>(
-      name, kBox, [](auto c) { return float(c.x() + 100 * c.y()) + 0.125f * float(c.z()); }, 0.5);
-}
-
 // All voxels of the box and one about it: same values, same states.
 template <class Grid>
 void expectSame(const Grid& a, const Grid& b, double tolerance = 0) {
@@ -141,7 +133,6 @@ TEST(VolumeTextureRead, AnyFileOfTheSlicesOrTheirPatternServes) {
 }
 
 TEST(VolumeTextureRead, LevelSetsKeepTheirSigns) {
-  openvdb::initialize();
   const TemporaryFolder folder;
   const auto surface = ball(20, {3.3, 2, 1}, 0.25);
   VolumeTextureSettings settings;

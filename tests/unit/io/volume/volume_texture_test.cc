@@ -24,22 +24,6 @@ namespace {
 using namespace test;
 using openvdb::Coord;
 
-const openvdb::CoordBBox kBox(Coord(-5, 2, 30), Coord(12, 9, 41));  // 18 x 8 x 12
-
-float scalarAt(const Coord& c) { return float(c.x() + 100 * c.y()) + 0.125f * float(c.z()); }
-
-openvdb::FloatGrid::Ptr scalar(const std::string& name = "jacobian") {
-  openvdb::initialize();
-  return block<openvdb::FloatGrid>(name, kBox, scalarAt, 0.5);
-}
-
-openvdb::Vec3SGrid::Ptr vectors(const std::string& name = "Cd") {
-  openvdb::initialize();
-  return block<openvdb::Vec3SGrid>(
-      name, kBox, [](auto c) { return openvdb::Vec3f(float(c.x()), float(c.y()), float(c.z())); },
-      0.5);
-}
-
 // A part's channel: rows of a width.
 struct Pixels {
   int width = 0, height = 0;
@@ -192,7 +176,6 @@ TEST(VolumeTexture, BackgroundStandsWhereNothingIsActive) {
 }
 
 TEST(VolumeTexture, ResamplingKeepsLinearFunctionsAndMeans) {
-  openvdb::initialize();
   const TemporaryFolder folder;
   const auto linear = [](const openvdb::Vec3d& w) { return 2 * w.x() - w.y() + 0.5 * w.z() + 3; };
   const openvdb::CoordBBox box(Coord(0, 0, 0), Coord(31, 15, 23));
@@ -221,7 +204,6 @@ TEST(VolumeTexture, ResamplingKeepsLinearFunctionsAndMeans) {
 }
 
 TEST(VolumeTexture, ValuesThatPixelsDoNotHoldAreCounted) {
-  openvdb::initialize();
   const TemporaryFolder folder;
   auto grid = block<openvdb::FloatGrid>("v", kBox, [](auto) { return 1.5f; });
   grid->tree().setValue(Coord(0, 4, 35), 1e6f);

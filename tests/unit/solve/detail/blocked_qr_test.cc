@@ -3,23 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "core/expect.h"
-#include "core/random.h"
 #include "innermap/core/error.h"
+#include "solve/points.h"
 
 namespace innermap {
 namespace {
 
-Matrix randomMatrix(std::size_t rows, std::size_t columns, std::uint64_t seed) {
-  const CounterRandom random(seed, 1);
-  Matrix a(rows, columns);
-  for (std::size_t i = 0; i < rows * columns; ++i) a.data()[i] = 2 * random.uniform(i) - 1;
-  return a;
-}
-
 TEST(BlockedQr, TurnsTheMatrixIntoItsTriangle) {
   for (const std::size_t columns : {1, 63, 64, 65, 200, 333}) {
     const std::size_t rows = columns + 117;
-    const Matrix a = randomMatrix(rows, columns, columns);
+    const Matrix a = testing::randomWeights(rows, columns, columns);
     const BlockedQr qr(a);
     Matrix b = a;
     qr.applyTransposedQ(b);
@@ -33,11 +26,11 @@ TEST(BlockedQr, TurnsTheMatrixIntoItsTriangle) {
 TEST(BlockedQr, RefusesWideMatrices) { EXPECT_THROW(BlockedQr(Matrix(3, 4)), SettingError); }
 
 TEST(BlockedQr, CancelStopsIt) {
-  test::expectCancels([&] { BlockedQr(randomMatrix(200, 100, 1)); });
+  test::expectCancels([&] { BlockedQr(testing::randomWeights(200, 100, 1)); });
 }
 
 TEST(Multiply, EqualsThePlainLoop) {
-  const Matrix a = randomMatrix(31, 17, 1), b = randomMatrix(17, 300, 2);
+  const Matrix a = testing::randomWeights(31, 17, 1), b = testing::randomWeights(17, 300, 2);
   Matrix c(31, 300);
   multiply(false, 2, a, b, 0, c);
   Matrix at(17, 31);

@@ -2,17 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "solve/points.h"
 
 namespace innermap {
 namespace {
-
-Matrix randomMatrix(std::size_t rows, std::size_t columns, std::uint64_t seed) {
-  const CounterRandom random(seed, 5);
-  Matrix a(rows, columns);
-  for (std::size_t i = 0; i < rows * columns; ++i) a.data()[i] = 2 * random.uniform(i) - 1;
-  return a;
-}
 
 Matrix product(const Matrix& a, const Matrix& b) {
   Matrix c(a.rows(), b.columns());
@@ -27,11 +20,12 @@ Matrix product(const Matrix& a, const Matrix& b) {
 TEST(Directions, ManyDirectionsGiveLeastSquares) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Matrix a = randomMatrix(30, 8, seed), b = randomMatrix(30, 3, seed + 10);
+    const Matrix a = testing::randomWeights(30, 8, seed),
+                 b = testing::randomWeights(30, 3, seed + 10);
     Matrix residual = b, x(8, 3);
     OrthogonalDirections directions(30, 8);
     for (int round = 0; round < 3; ++round) {
-      const Matrix z = randomMatrix(8, 4, seed + 100 + static_cast<std::uint64_t>(round));
+      const Matrix z = testing::randomWeights(8, 4, seed + 100 + static_cast<std::uint64_t>(round));
       const std::size_t before = directions.count();
       directions.add(z, product(a, z));
       directions.project(before, residual, x);
@@ -69,8 +63,8 @@ TEST(Directions, LittleIsJudgedWhenAllElseIsTaken) {
 }
 
 TEST(Directions, DependentAndZeroColumnsAreLeftOut) {
-  const Matrix a = randomMatrix(20, 4, 1), z = randomMatrix(4, 2, 2);
-  Matrix residual = randomMatrix(20, 1, 3), x(4, 1);
+  const Matrix a = testing::randomWeights(20, 4, 1), z = testing::randomWeights(4, 2, 2);
+  Matrix residual = testing::randomWeights(20, 1, 3), x(4, 1);
   OrthogonalDirections directions(20, 4);
   directions.add(z, product(a, z));
   directions.project(0, residual, x);

@@ -16,12 +16,7 @@
 namespace innermap {
 namespace {
 
-using shapes::block;
-using shapes::boundaryOf;
-using shapes::plate;
-using shapes::pointOn;
-using shapes::with;
-using shapes::without;
+using namespace shapes;
 
 double lengthOf(const Points& vertices, const std::vector<int>& loop) {
   double length = 0;

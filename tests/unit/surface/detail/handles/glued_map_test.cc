@@ -10,12 +10,7 @@
 namespace innermap {
 namespace {
 
-using shapes::block;
-using shapes::boundaryOf;
-using shapes::plate;
-using shapes::pointOn;
-using shapes::with;
-using shapes::without;
+using namespace shapes;
 
 // Corners rounded.
 ClosedSurface rounded(ClosedSurface surface, int steps) {
