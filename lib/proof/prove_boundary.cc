@@ -218,12 +218,15 @@ class BoundarySearch {
     return taken;
   }
 
-  // By plain sums, at the middle and the corners.
+  // By plain sums, at the middle and the corners: four points take as long as one.
   void look(const SurfacePiece& piece) {
     const Vec3 places[4] = {centroid(piece.at), piece.at[0], piece.at[1], piece.at[2]};
     const Vec3 goes[4] = {centroid(piece.to), piece.to[0], piece.to[1], piece.to[2]};
+    Vec3 world[4], moved[4];
+    for (int i = 0; i < 4; ++i) world[i] = places[i] / scale_;
+    map_.evaluate(world, 4, moved, nullptr);
     for (int i = 0; i < 4; ++i) {
-      const double error = norm(scale_ * map_(places[i] / scale_) - goes[i]);
+      const double error = norm(scale_ * moved[i] - goes[i]);
       if (error > seen_) {
         seen_ = error;
         seenAt_ = places[i];

@@ -53,20 +53,6 @@ OrderLimits orderLimits(double farRatio) {
   return out;
 }
 
-void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
-             OrderedCharges& out) {
-  std::array<std::size_t, kOrders.size() + 1> counts{}, next{};
-  for (const std::int32_t place : places) ++counts[place];
-  std::size_t total = 0;
-  for (std::size_t i = 0; i < kOrders.size(); ++i) {
-    next[i] = total;
-    out.ends[i] = total += counts[i];
-  }
-  next.back() = total;
-  out.list.resize(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) out.list[next[places[i]]++] = charges[i];
-}
-
 void sortCharges(const double* charges, const std::vector<std::uint32_t>& some,
                  const ExpansionBall& ball, const OrderLimits& limits,
                  std::vector<std::int32_t>& places, OrderedCharges& out) {

@@ -21,10 +21,6 @@ struct ExpansionBall {
 // |w| / d^2 is at most a tenth of that for order kOrder at farRatio; else to order kOrder.
 OrderLimits orderLimits(double farRatio);
 
-// By the place in kOrders of each; kNotExpanded is left out.
-void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
-             OrderedCharges& out);
-
 // Those that are far from a ball. places: memory for that.
 void sortCharges(const double* charges, const std::vector<std::uint32_t>& some,
                  const ExpansionBall& ball, const OrderLimits& limits,

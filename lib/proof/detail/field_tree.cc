@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+
+#include "proof/detail/surface_pieces.h"
 
 namespace innermap::proof {
 namespace {
@@ -12,17 +15,29 @@ constexpr int kMostLevels = 24;
 // Of a node's ball, in half edges: more than the cube's own, so that sets across its faces fit.
 constexpr double kReach = 2.2;
 
-std::vector<double> packed(const HarmonicField& field, double scale) {
+// Along a curve, so that charges near one another lie near in memory too.
+std::vector<std::size_t> alongCurve(const Points& sources) {
+  const Box3 box = boundingBox(sources);
+  std::vector<std::pair<std::uint32_t, std::size_t>> keyed;
+  for (std::size_t j = 0; j < sources.size(); ++j) keyed.emplace_back(curveKey(sources[j], box), j);
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::size_t> out;
+  for (const auto& [key, j] : keyed) out.push_back(j);
+  return out;
+}
+
+Numbers packed(const HarmonicField& field, double scale) {
   const Points& sources = field.sources();
-  std::vector<double> out(kChargeStride * sources.size());
-  for (std::size_t j = 0; j < sources.size(); ++j) {
-    double* q = out.data() + kChargeStride * j;
+  Numbers out(kChargeStride * sources.size());
+  double* q = out.data();
+  for (const std::size_t j : alongCurve(sources)) {
     Vec3 weight;
     for (int k = 0; k < 3; ++k) {
       q[k] = scale * sources[j][k];
       weight[k] = q[3 + k] = scale * scale * field.weights()(j, k);
     }
     q[6] = norm(weight) * (1 + 1e-15);
+    q += kChargeStride;
   }
   return out;
 }

@@ -56,7 +56,7 @@ class FieldTree {
   std::unique_ptr<Node> childOf(const Node& parent, const Vec3& center) const;
 
   OrderLimits limits_;
-  std::vector<double> charges_;
+  Numbers charges_;             // each in one line of the cache
   std::unique_ptr<Node> root_;  // the affine part, and all charges near: it holds everywhere
 };
 

@@ -71,6 +71,26 @@ void OrderPlaces(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RE
   }
 }
 
+// Writes those of the list that have that place; behind them up to kListLanes numbers more.
+std::size_t ListOf(const std::uint32_t* HWY_RESTRICT list, const std::int32_t* HWY_RESTRICT places,
+                   std::size_t count, std::int32_t place, std::uint32_t* HWY_RESTRICT out) {
+#if HWY_TARGET == HWY_SCALAR
+  const hn::ScalableTag<std::int32_t> d;
+#else
+  const hn::CappedTag<std::int32_t, kListLanes> d;
+#endif
+  const hn::RebindToUnsigned<decltype(d)> whole;
+  const auto wanted = hn::Set(d, place);
+  std::size_t found = 0, i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+    const auto takes = hn::RebindMask(whole, hn::Eq(hn::LoadU(d, places + i), wanted));
+    found += hn::CompressStore(hn::LoadU(whole, list + i), takes, whole, out + found);
+  }
+  for (; i < count; ++i)
+    if (places[i] == place) out[found++] = list[i];
+  return found;
+}
+
 // A charge, seen from the places that it is expanded about. Its harmonics are
 // I_nm(q) = (n - m)! P_n^m(cos theta) e^(i m phi) / r^(n+1): 1/|x - q| is the sum of
 // I_nm(q) conj(R_nm(x)).
@@ -215,30 +235,33 @@ void AddCharges(const double* HWY_RESTRICT charges, const OrderedCharges& some,
   }
 }
 
-// Charges, one a lane, about the origin: coordinates, weights, the weights' lengths.
-struct alignas(64) ChargeLanes {
-  Lanes place[3], weight[3], length;
+// Charges, one a lane, about the origin, with the weights' lengths.
+struct ChargeLanes {
+  V place[3], weight[3], length;
 };
 
-HWY_INLINE Arm ArmOf(const ChargeLanes& q) {
+// Those from `begin` on; lanes that are left have no weight.
+HWY_INLINE ChargeLanes Gather(const double* HWY_RESTRICT charges, const OrderedCharges& some,
+                              std::size_t begin, const Vec3& center) {
   const D d;
-  return ArmTo(hn::Load(d, q.place[0]), hn::Load(d, q.place[1]), hn::Load(d, q.place[2]),
-               hn::Load(d, q.weight[0]), hn::Load(d, q.weight[1]), hn::Load(d, q.weight[2]));
+  const hn::RebindToSigned<D> whole;
+  alignas(64) std::int64_t at[kLanes];
+  const std::size_t last = some.count() - 1;
+  for (std::size_t l = 0; l < hn::Lanes(d); ++l)
+    at[l] = static_cast<std::int64_t>(kChargeStride * some.list[std::min(begin + l, last)]);
+  const auto index = hn::Load(whole, at);
+  const auto real = hn::FirstN(d, begin <= last ? some.count() - begin : 0);
+  ChargeLanes out;
+  for (int a = 0; a < 3; ++a) {
+    out.place[a] = hn::GatherIndex(d, charges + a, index) - Number(center[a]);
+    out.weight[a] = hn::IfThenElseZero(real, hn::GatherIndex(d, charges + 3 + a, index));
+  }
+  out.length = hn::IfThenElseZero(real, hn::GatherIndex(d, charges + 6, index));
+  return out;
 }
 
-// Those from `begin` on; lanes that are left have no weight.
-HWY_INLINE void Gather(const double* HWY_RESTRICT charges, const OrderedCharges& some,
-                       std::size_t begin, const Vec3& center, ChargeLanes& out) {
-  for (std::size_t l = 0; l < hn::Lanes(D()); ++l) {
-    const bool real = begin + l < some.count();
-    const double* const charge =
-        charges + kChargeStride * some.list[real ? begin + l : some.count() - 1];
-    for (int a = 0; a < 3; ++a) {
-      out.place[a][l] = charge[a] - center[a];
-      out.weight[a][l] = real ? charge[3 + a] : 0;
-    }
-    out.length[l] = real ? charge[6] : 0;
-  }
+HWY_INLINE Arm ArmOf(const ChargeLanes& q) {
+  return ArmTo(q.place[0], q.place[1], q.place[2], q.weight[0], q.weight[1], q.weight[2]);
 }
 
 void AddAboutOne(const double* HWY_RESTRICT charges, const OrderedCharges& some, double radius,
@@ -252,12 +275,11 @@ void AddAboutOne(const double* HWY_RESTRICT charges, const OrderedCharges& some,
   Rest rest{zero, zero, zero, zero};
   for (std::size_t i = 0; i < some.count(); i += 2 * hn::Lanes(d)) {
     const int order = OrderAt(some, i);
-    ChargeLanes q[2];
-    for (std::size_t half = 0; half < 2; ++half)
-      Gather(charges, some, i + half * hn::Lanes(d), expansion.center, q[half]);
-    const Arm a = ArmOf(q[0]), b = ArmOf(q[1]);
-    AddRest(order, a, hn::Load(d, q[0].length), within, rest);
-    AddRest(order, b, hn::Load(d, q[1].length), within, rest);
+    const ChargeLanes first = Gather(charges, some, i, expansion.center);
+    const ChargeLanes second = Gather(charges, some, i + hn::Lanes(d), expansion.center);
+    const Arm a = ArmOf(first), b = ArmOf(second);
+    AddRest(order, a, first.length, within, rest);
+    AddRest(order, b, second.length, within, rest);
     AddPair(order, a, b, sums);
   }
   for (std::size_t c = 0; c < used; ++c)
@@ -278,6 +300,7 @@ namespace innermap::proof {
 
 HWY_EXPORT(Measure);
 HWY_EXPORT(OrderPlaces);
+HWY_EXPORT(ListOf);
 HWY_EXPORT(AddCharges);
 HWY_EXPORT(AddAboutOne);
 
@@ -290,6 +313,21 @@ void orderPlaces(const double* charges, const std::uint32_t* list, std::size_t c
                  const Vec3& center, double radius, const OrderLimits& limits,
                  std::int32_t* places) {
   HWY_DYNAMIC_DISPATCH(OrderPlaces)(charges, list, count, center, radius, limits, places);
+}
+
+void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
+             OrderedCharges& out) {
+  // A list at a time: each may write a little beyond what it finds.
+  out.list.resize(places.size() + kListLanes);
+  std::size_t end = 0;
+  const auto add = [&](std::size_t place) {
+    end += HWY_DYNAMIC_DISPATCH(ListOf)(charges, places.data(), places.size(),
+                                        static_cast<std::int32_t>(place), out.list.data() + end);
+    return end;
+  };
+  for (std::size_t i = 0; i < kOrders.size(); ++i) out.ends[i] = add(i);
+  add(kNotExpanded);
+  out.list.resize(end);
 }
 
 void addCharges(const double* charges, const OrderedCharges& some, const LaneSets& sets,

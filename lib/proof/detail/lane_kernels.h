@@ -1,6 +1,8 @@
 // The innermost loops of the proof, on eight places at a time, for the machine's instruction set.
 #pragma once
 
+#include <tbb/cache_aligned_allocator.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +13,7 @@
 namespace innermap::proof {
 
 using Lanes = double[kLanes];
+using Numbers = std::vector<double, tbb::cache_aligned_allocator<double>>;
 
 // Eight sets of points: center + (convex hull of the vertices and their mirror images about the
 // centre) + a ball of radius `slack`. All lie within `radius` of their centres.
@@ -64,6 +67,11 @@ struct OrderedCharges {
   std::array<std::size_t, kOrders.size()> ends = {};  // of the charges of each order
   std::size_t count() const { return ends.back(); }
 };
+
+// By the place in kOrders of each; kNotExpanded is left out.
+constexpr std::size_t kListLanes = 16;  // charges of a list that are looked at together, at most
+void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
+             OrderedCharges& out);
 
 // Tells which lanes have no charge nearer than kNearRatio allows. nearest[i]: the least over the
 // lanes of (distance / radius)^2 of charge list[i].

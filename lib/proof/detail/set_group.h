@@ -1,8 +1,6 @@
 // What a map in steps does to eight sets of points at once.
 #pragma once
 
-#include <tbb/cache_aligned_allocator.h>
-
 #include <cstdint>
 #include <vector>
 
@@ -30,7 +28,6 @@ class SetGroup {
   const LaneFindings& findings(std::size_t step) const { return findings_[step]; }
 
  private:
-  using Numbers = std::vector<double, tbb::cache_aligned_allocator<double>>;
   bool computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t needed, LaneFindings& out);
 
   std::vector<LaneFindings> findings_;
