@@ -14,8 +14,6 @@ namespace {
 // its depth, and at most. Measured with maps of solids with limbs bent through their bodies:
 // narrower or thinner-skinned cuts make the steps of a map miss their tolerance.
 constexpr double kMouth = 1.2, kSlope = 1, kWidest = 6;
-constexpr double kPlug =
-    2.4;  // from a plug's nodes to its walls; at 1.2 steps miss their tolerance
 // Nodes of the walls that stay inside, since the topology asks for them, are at least so deep.
 constexpr float kLeastDepth = 0.1f;  // spacings
 
@@ -113,7 +111,7 @@ void thickenPlugs(const std::vector<std::size_t>& plugs, const std::vector<std::
                   LatticeSigns& signs) {
   if (plugs.empty()) return;
   Balls thick(signs);
-  for (const std::size_t n : plugs) thick.add(n, kPlug);
+  for (const std::size_t n : plugs) thick.add(n, kMouth);
   const std::vector<float>& within = thick.within();
   Sides wanted(signs.side.size(), NodeSide::outside);
   for (std::size_t n = 0; n < wanted.size(); ++n)

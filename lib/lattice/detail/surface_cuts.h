@@ -22,8 +22,9 @@ std::vector<Box3> boxesOf(const std::vector<std::size_t>& of, const LatticeSigns
 void openCuts(const std::vector<std::size_t>& cut, const std::vector<float>& depth,
               LatticeSigns& signs);
 
-// Likewise sets them so that what closes tunnels is thick enough to be mapped. keptOut: nodes that
-// stay outside, those of cuts.
+// Likewise sets them so that what closes tunnels is as thick as an open cut is wide at its mouth:
+// thicker plugs hide more of the mesh, and maps are no better. keptOut: nodes that stay outside,
+// those of cuts.
 void thickenPlugs(const std::vector<std::size_t>& plugs, const std::vector<std::size_t>& keptOut,
                   LatticeSigns& signs);
 
