@@ -88,12 +88,6 @@ class StepFitter {
       const auto began = std::chrono::steady_clock::now();
       Step step = fitStep(end, may);
       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-      if (getenv("DBGS"))
-        fprintf(stderr,
-                "STEP %.4f -> %.4f charges %zu p99 %.2e max %.2e of tol %.2e folded %.5f (now "
-                "%.5f) end %d  %.2f s\n",
-                at_, end, step.record.sources, step.fit.error.p99, step.fit.error.max,
-                toleranceUntil(end), step.record.folded, folded_, (int)step.fit.end, seconds);
       if (step.fit.end == AdaptiveEnd::stopped ||
           (may && half >= kShortestFitted && foldsTooMuch(step))) {
         ends.push_back((at_ + end) / 2);
