@@ -152,6 +152,22 @@ TEST(StepFitRelease, InsideErrorsAreBelowTheCertificates) {
   }
 }
 
+// So few charges cannot follow a bar that is wrung: once the errors add up to twice the tolerance,
+// one step does the rest of the way.
+TEST(StepFitRelease, OneStepDoesTheRestOfAWayThatIsLost) {
+  constexpr double kTolerance = 3e-4;
+  const Mesh source = bar();
+  const BoundaryPair pair = makeBoundaryPair(source, moved(source, twisted(12)));
+  const StepFit fit = fitInSteps(pair, pointsInside(pair.solid(), 2000),
+                                 {.tolerance = kTolerance, .folds = 4e-4, .maxSources = 1000});
+  double missed = 0;
+  std::size_t lost = 0;
+  while (lost < fit.steps.size() && missed <= 2 * kTolerance) missed += fit.steps[lost++].error;
+  ASSERT_LT(lost, fit.steps.size()) << "it was to be lost on the way";
+  EXPECT_EQ(fit.steps.size(), lost + 1);
+  EXPECT_EQ(fit.steps.back().to, 1);
+}
+
 // Central differences at two distances: what they are off falls with the square.
 TEST(StepFit, JacobiansAreTheDerivative) {
   const Mesh source = bar();
