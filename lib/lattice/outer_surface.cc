@@ -261,8 +261,7 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
   out.leftOut = parts.leftOut;
   out.leftOutShare = parts.leftOutShare;
   const std::vector<int> handles = wantedHandles(solid, signs, parts, settings);
-  const Sides uncut = united(parts.parts);
-  signs.side = uncut;
+  signs.side = united(parts.parts);
   const std::vector<float> depth = depthsInside(signs);
   const std::vector<float> order = growingOrder(solid, signs, depth);
   const std::vector<std::size_t> plugged = closeTunnels(solid, signs, handles, order, parts);

@@ -20,7 +20,8 @@ constexpr std::size_t kInside = 20000, kPlaces = 16;
 // What a thousand charges fold is near what the whole fit does, where that is so much: no need to
 // go on to it.
 constexpr double kHopelessFolds = 2 * kManyFolds;
-constexpr double kWorthIt = 0.5;       // of one map's folds may be left by steps
+// Of one map's folds may be left by steps, times as often as their error exceeds the tolerance.
+constexpr double kWorthIt = 0.5;
 constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 
 // A fit with a number of charges.
@@ -153,7 +154,8 @@ bool MapFitter::foldsTooMuch(const FitOutcome& out) const {
 
 bool MapFitter::areBetter(FitOutcome& steps, const FitOutcome& single) {
   if (settings_.oneToOne != OneToOne::on)
-    return steps.inside.folded <= kWorthIt * single.inside.folded;
+    return steps.inside.folded * std::max(1.0, steps.error.p99 / settings_.tolerance) <=
+           kWorthIt * single.inside.folded;
   if (!single.proof || single.proof->negative == 0 || steps.inside.folded > 0)
     return steps.inside.folded <= single.inside.folded;
   prove(steps);

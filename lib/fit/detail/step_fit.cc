@@ -30,7 +30,7 @@ constexpr double kShare = 1.5, kLastShare = 0.6;
 constexpr double kKept = 0.375, kMended = 1.25;
 // Of the tolerance: where the steps' errors add up to more than that, or the map folds many points,
 // more steps do not help, and the last one is made at once. Steps that are met add up to kShare.
-constexpr double kLost = 2;
+constexpr double kLost = 8;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 // Of the work until there to the work in all, by the way until there: the nearer to the target, the

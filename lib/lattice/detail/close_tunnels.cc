@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "innermap/core/run.h"
 #include "lattice/detail/grow_solid.h"
@@ -44,22 +45,20 @@ std::vector<Nodes> plugs(const LatticeSigns& signs, const Sides& part) {
 
 class Tunnels {
  public:
+  // with: the part alone, with so many handles.
   Tunnels(const Solid& solid, const LatticeSigns& signs, const Sides& part, const Sides& all,
-          int handles, const std::vector<float>& order)
+          int handles, const std::vector<float>& order, LatticeSigns with, int has)
       : signs_(signs),
         part_(part),
         all_(all),
         handles_(handles),
         order_(order),
         winding_(solid.repaired().mesh.vertices, solid.repaired().mesh.triangles),
-        with_(signs) {
-    with_.side = part;
-    left_ = latticeTopology(with_).handles;
-  }
+        with_(std::move(with)),
+        left_(has) {}
 
   Nodes toClose() {
     Nodes closed;
-    if (left_ <= handles_) return closed;
     std::vector<Nodes> found = plugs(signs_, part_), others;
     if (found.size() > kMostTried) found.resize(kMostTried);
     const auto close = [&](const Nodes& plug) {
@@ -148,14 +147,18 @@ class Tunnels {
   const WindingNumber winding_;
   const Sides middle_ = nodesWithNeighbours(signs_.lattice);
   LatticeSigns with_;  // the part with what was closed
-  int left_ = 0;       // its handles
+  int left_;           // its handles
 };
 
 }  // namespace
 
 Nodes tunnelsToClose(const Solid& solid, const LatticeSigns& signs, const Sides& part,
                      const Sides& all, int handles, const std::vector<float>& order) {
-  return Tunnels(solid, signs, part, all, handles, order).toClose();
+  LatticeSigns alone = signs;
+  alone.side = part;
+  const int has = latticeTopology(alone).handles;
+  if (has <= handles) return {};
+  return Tunnels(solid, signs, part, all, handles, order, std::move(alone), has).toClose();
 }
 
 }  // namespace innermap
