@@ -72,10 +72,11 @@ class Tunnels {
         close(plug);
     }
     std::optional<std::size_t> cuts = cutsOf(with_.side);
+    if (!cuts) return closed;  // handles of its own
     for (const Nodes& plug : others)
       if (tryClosing(plug, [&](const Sides& with) {
             const std::optional<std::size_t> then = cutsOf(with);
-            if (cuts && !(then && *then + plug.size() < *cuts)) return false;
+            if (!then || *then + plug.size() >= *cuts) return false;
             cuts = then;
             return true;
           }))

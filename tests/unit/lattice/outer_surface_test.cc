@@ -124,6 +124,11 @@ TEST(OuterSurface, ClosesNoTunnelThatAnotherPartRunsThrough) {
   EXPECT_FALSE(made.cuts.empty());
 }
 
+// To cut a ring's own handle takes fewer nodes than to fill its hole, but lies nowhere.
+TEST(OuterSurface, ClosesNoHoleOfARing) {
+  EXPECT_THROW(outer(shapes::torus(32, 16, 1, 0.35), 32, 0), DataError);
+}
+
 // Two balls meet in a crease of 74 degrees.
 TEST(OuterSurface, HasNoTeethAlongCreases) {
   const Mesh mesh = outer(shapes::joined(shapes::icosphere(4, 1, {-0.6, 0.05, 0}),
