@@ -83,7 +83,7 @@ std::vector<CrossingPoint> exposedCrossings(const Solid& solid, double apart) {
           }
         }
       },
-      "looking for sliding parts");
+      "following crossings");
   for (const std::vector<CrossingPoint>& of : found) all.insert(all.end(), of.begin(), of.end());
   return all;
 }

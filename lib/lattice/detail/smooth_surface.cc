@@ -59,7 +59,7 @@ Marks roughVertices(const Solid& solid, double spacing, const Mesh& mesh,
           const Vec3& at = mesh.vertices[v];
           rough[v] =
               solid.distance(at) > kOff * spacing ||
-              (isSharp(mesh, fans[v]) && crossings.anyNearer(at, kBesideCrossings * spacing));
+              (crossings.anyNearer(at, kBesideCrossings * spacing) && isSharp(mesh, fans[v]));
         }
       },
       "smoothing the surface");

@@ -84,6 +84,7 @@ TEST(OuterSurface, NarrowGapsPierceNoThinWalls) {
     const OuterSurface made = outer(mesh, 40, 0);
     EXPECT_EQ(made.topology, (SolidTopology{1, 0, 0}));
     EXPECT_TRUE(made.cuts.empty());
+    EXPECT_TRUE(made.plugs.empty()) << "a hole that was closed again";
     EXPECT_LT(made.apartP99 * Solid(mesh).diagonal(), 0.8 * made.edge) << "rims are rounded";
   }
 }

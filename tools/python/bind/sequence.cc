@@ -86,8 +86,7 @@ void bindSequence(py::module_& m) {
        "for one), deformation_mean, boundary_rms, boundary_p99, boundary_max (fractions of the "
        "frame's diagonal), jacobian_min, jacobian_max, folded_fraction, outside_fraction, volume "
        "(world units cubed), error: why a frame could not be used; its figures are then NaN. A "
-       "RuntimeWarning says of each "
-       "frame what makes it doubtful, or that it is left out. With "
+       "RuntimeWarning says of each frame what makes it doubtful, or that it is left out. With "
        "prove also the proofs of each map, named as in Map.prove(), and statement: proofs and "
        "checks in words.\n\nsource and frames as deform() takes them. Raises DataError where no "
        "frame can be used, FileError, MemoryError."},
