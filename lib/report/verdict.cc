@@ -81,21 +81,27 @@ std::string foldStatement(double folded, const Injectivity& known, double thresh
   return out;
 }
 
-void judgeCrossings(const MappedSolid& mapped, const VerdictSettings& settings, Verdict& out) {
+// The target of a source that was laid onto a mesh is its image there, whose flat triangles can
+// cross where the mesh itself does not.
+void judgeCrossings(const MappedSolid& mapped, const VerdictSettings& settings, MapOrigin origin,
+                    Verdict& out) {
   const SelfIntersectionFigures& target = mapped.injectivity.target;
   const SelfIntersectionFigures& source = mapped.injectivity.source;
-  std::string text = target.pairs == 0
-                         ? "the target nowhere runs through itself"
-                         : fmt::format(
-                               "the target runs through itself: {} pair{} of triangles, "
-                               "where no map is one-to-one",
-                               target.pairs, target.pairs == 1 ? "" : "s");
+  const bool laid = origin == MapOrigin::laidOn;
+  const char* const what = laid ? "the source, as laid onto the target," : "the target";
+  std::string text = target.pairs == 0 ? fmt::format("{} nowhere runs through itself", what)
+                                       : fmt::format(
+                                             "{} runs through itself: {} pair{} of triangles, "
+                                             "where no map is one-to-one",
+                                             what, target.pairs, target.pairs == 1 ? "" : "s");
   if (source.pairs > 0) text += fmt::format("; the source does, in {}", source.pairs);
   out.findings.push_back(
-      {finding("self_intersections", text, static_cast<double>(target.pairs),
-               static_cast<double>(settings.maxCrossings),
-               "repair the target where `innermap check` places the crossings, or allow "
-               "them by --warn-crossings"),
+      {finding(
+           "self_intersections", text, static_cast<double>(target.pairs),
+           static_cast<double>(settings.maxCrossings),
+           std::string(laid ? "pairs of places in --landmarks, another way by --choose, "
+                            : "repair the target where `innermap check` places the crossings, ") +
+               "or allow them by --warn-crossings"),
        true});  // reading the boundaries warned of it
 }
 
@@ -165,7 +171,7 @@ Verdict judgeMap(const MappedSolid& mapped, const SolidGrids* grids,
     judgeOutside(grids ? std::max(grids->outsideFraction, known.outside) : known.outside, settings,
                  advice, out);
   }
-  judgeCrossings(mapped, settings, out);
+  judgeCrossings(mapped, settings, origin, out);
   return out;
 }
 

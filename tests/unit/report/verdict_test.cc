@@ -55,6 +55,19 @@ TEST(Verdict, SharesOverTheirThresholdsAreNotMet) {
     EXPECT_TRUE(findingOf(allowed, name).met) << name;
 }
 
+// What crosses is the source's image on the mesh, where there is nothing to repair.
+TEST(Verdict, OfASourceLaidOntoATargetItsImageCrosses) {
+  MappedSolid mapped = mapOf(5e-4, 1e-3);
+  mapped.injectivity.target.pairs = 1;
+  const auto crossings = [&](MapOrigin origin) {
+    return findingOf(judged(mapped, origin), "self_intersections");
+  };
+  EXPECT_NE(crossings(MapOrigin::laidOn).statement.find("as laid onto"), std::string::npos);
+  EXPECT_EQ(crossings(MapOrigin::laidOn).advice.find("repair"), std::string::npos);
+  EXPECT_EQ(crossings(MapOrigin::related).statement.find("as laid onto"), std::string::npos);
+  EXPECT_NE(crossings(MapOrigin::related).advice.find("repair"), std::string::npos);
+}
+
 // The fit has told of a tolerance that it missed; a map from a file has not.
 TEST(Verdict, WhatWasToldIsNotWarnedOfAgain) {
   const MappedSolid mapped = mapOf(2e-3, 1e-3);
