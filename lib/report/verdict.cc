@@ -38,14 +38,18 @@ std::string boundaryAdvice(MapOrigin origin, bool toTolerance) {
                      : "--tolerance in place of a number of charges, or more --charges";
 }
 
-std::string foldAdvice(MapOrigin origin, bool toTolerance, OneToOne oneToOne) {
+std::string foldAdvice(const MappedSolid& mapped, MapOrigin origin, const FitMapSettings& fitted) {
   const std::string laid = ", pairs of places in --landmarks, or --aligned if both stand alike";
   if (origin == MapOrigin::file)
     return "fit the map again with --one-to-one on, a smaller --tolerance, or for solids that were "
            "never related --landmarks or --aligned";
-  if (!toTolerance) return "--one-to-one on with --tolerance, in place of a number of charges";
-  const std::string first = oneToOne == OneToOne::on ? "more --max-steps, a smaller --tolerance"
-                                                     : "--one-to-one on, a smaller --tolerance";
+  if (!fitFacts(mapped.facts).tolerance)
+    return "--one-to-one on with --tolerance, in place of a number of charges";
+  const bool allSteps = static_cast<int>(mapped.map.steps().size()) >= fitted.maxSteps;
+  const std::string first =
+      allSteps || fitted.oneToOne == OneToOne::on
+          ? fmt::format("more --max-steps than {}, a smaller --tolerance", fitted.maxSteps)
+          : "--one-to-one on, a smaller --tolerance";
   return origin == MapOrigin::laidOn ? first + laid : first;
 }
 
@@ -156,10 +160,9 @@ std::vector<Setting> describe(VerdictSettings& s, bool frames) {
 }
 
 Verdict judgeMap(const MappedSolid& mapped, const SolidGrids* grids,
-                 const VerdictSettings& settings, MapOrigin origin, OneToOne oneToOne) {
+                 const VerdictSettings& settings, MapOrigin origin, const FitMapSettings& fitted) {
   Verdict out;
-  const bool toTolerance = fitFacts(mapped.facts).tolerance.has_value();
-  const std::string advice = foldAdvice(origin, toTolerance, oneToOne);
+  const std::string advice = foldAdvice(mapped, origin, fitted);
   judgeBoundary(mapped, origin, out);
   const Injectivity& known = grids ? grids->injectivity : mapped.injectivity;
   if (grids || known.inside.checked > 0) {

@@ -41,10 +41,10 @@ std::vector<Setting> describe(VerdictSettings& settings, bool frames = false);
 enum class MapOrigin { related, laidOn, file };
 
 // Boundary, folds, outside and self-intersections of a map. grids: what voxels tell of it, or null.
-// oneToOne: as it was fitted, if known.
+// fitted: as it was, if known.
 Verdict judgeMap(const MappedSolid& mapped, const SolidGrids* grids,
                  const VerdictSettings& settings, MapOrigin origin,
-                 OneToOne oneToOne = OneToOne::automatic);
+                 const FitMapSettings& fitted = {});
 
 // Boundary, folds and outside of the frames that were fitted, against the tolerance: those that
 // miss it stand in the report's frames.missed. Empty without frames.

@@ -38,7 +38,7 @@ void run(const FitOptions& options, Context& context) {
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);
   reportInjectivity(fit.injectivity, context);
-  context.judge(judgeMap(fit, nullptr, options.verdict, MapOrigin::related, settings.oneToOne));
+  context.judge(judgeMap(fit, nullptr, options.verdict, MapOrigin::related, settings));
   context.timed("write", [&] { writeMap(options.output, fit); });
 }
 

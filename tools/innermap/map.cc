@@ -240,7 +240,7 @@ void run(const MapOptions& options, Context& context) {
   const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation));
   reportGrids(grids, options.evaluation.lame, context);
   context.judge(judgeMap(fit, &grids, options.verdict,
-                         laid ? MapOrigin::laidOn : MapOrigin::related, fitting.oneToOne));
+                         laid ? MapOrigin::laidOn : MapOrigin::related, fitting));
   folder->write("map.vdb", [&](const std::string& path) {
     writeGridFile(path, grids.all(), options.evaluation.names, context);
   });

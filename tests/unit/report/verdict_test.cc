@@ -68,6 +68,19 @@ TEST(Verdict, OfASourceLaidOntoATargetItsImageCrosses) {
   EXPECT_NE(crossings(MapOrigin::related).advice.find("repair"), std::string::npos);
 }
 
+TEST(Verdict, WhereAllStepsWereTakenMoreAreAdvised) {
+  MappedSolid mapped = mapOf(5e-4, 1e-3);
+  mapped.injectivity.inside.folded = 500;
+  const HarmonicMap step = mapped.map.steps().front();
+  mapped.map = ComposedMap(std::vector<HarmonicMap>(4, step));
+  const auto advice = [&](int maxSteps) {
+    const FitMapSettings fitted{.maxSteps = maxSteps};
+    return findingOf(judgeMap(mapped, nullptr, {}, MapOrigin::laidOn, fitted), "folds").advice;
+  };
+  EXPECT_NE(advice(4).find("more --max-steps than 4"), std::string::npos) << advice(4);
+  EXPECT_EQ(advice(5).find("--max-steps"), std::string::npos) << advice(5);
+}
+
 // The fit has told of a tolerance that it missed; a map from a file has not.
 TEST(Verdict, WhatWasToldIsNotWarnedOfAgain) {
   const MappedSolid mapped = mapOf(2e-3, 1e-3);
