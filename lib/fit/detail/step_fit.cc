@@ -28,8 +28,11 @@ constexpr double kShare = 1.5, kLastShare = 0.6;
 // many times the volume whose sense is undecided; and by how much a point is mended at most, as
 // what is farther off lies in creases, where charges do not help.
 constexpr double kKept = 0.375, kMended = 1.25;
-// Of the tolerance: where the steps' errors add up to more than that, or the map folds many points,
-// more steps do not help, and the last one is made at once. Steps that are met add up to kShare.
+// Times its own tolerance that a step leaves, and of the whole that the steps' errors add up to:
+// beyond that, or where the map folds many points, more steps do not help, and the last one is made
+// at once. Steps that are met add up to kShare; those that miss a little leave up to three times
+// what they may. Where an intermediate shape runs through itself a step leaves eight times and
+// more, and each one after it more than the one before.
 constexpr double kLost = 8;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
@@ -205,10 +208,13 @@ class StepFitter {
   };
 
   // Whether what is left of the way cannot make the map good.
-  bool isLost() const { return missed_ > kLost * settings_.tolerance || folded_ > kManyFolds; }
+  bool isLost() const {
+    return missed_ > kLost * settings_.tolerance || leapt_ || folded_ > kManyFolds;
+  }
 
   void take(Step step, bool last) {
     missed_ += step.fit.error.p99;
+    leapt_ = step.fit.error.p99 > kLost * toleranceUntil(step.record.to);
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
     folded_ = step.record.folded;
@@ -224,9 +230,10 @@ class StepFitter {
   CarriedBoundary boundary_;
   MappedPoints inside_;
   std::vector<MapStep> records_;
-  double at_ = 0;      // of the way
-  double folded_ = 0;  // share of the points inside, so far
-  double missed_ = 0;  // the steps' errors, added up
+  double at_ = 0;       // of the way
+  double folded_ = 0;   // share of the points inside, so far
+  double missed_ = 0;   // the steps' errors, added up
+  bool leapt_ = false;  // the last step left much more than it may
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 
