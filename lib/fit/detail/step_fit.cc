@@ -214,7 +214,8 @@ class StepFitter {
 
   void take(Step step, bool last) {
     missed_ += step.fit.error.p99;
-    leapt_ = step.fit.error.p99 > kLost * toleranceUntil(step.record.to);
+    leapt_ = step.fit.end == AdaptiveEnd::noGain &&
+             step.fit.error.p99 > kLost * toleranceUntil(step.record.to);
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
     folded_ = step.record.folded;
@@ -233,7 +234,7 @@ class StepFitter {
   double at_ = 0;       // of the way
   double folded_ = 0;   // share of the points inside, so far
   double missed_ = 0;   // the steps' errors, added up
-  bool leapt_ = false;  // the last step left much more than it may
+  bool leapt_ = false;  // the last step left much more than it may, though it had the charges
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 
