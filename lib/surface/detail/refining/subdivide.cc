@@ -20,9 +20,9 @@ constexpr double kMargin = 0.8;  // of the tolerance: points between those looke
 constexpr int kRounds = 60;
 constexpr int kUncrossings = 20;        // rounds that split what crosses
 constexpr double kMostCrossing = 0.02;  // share of the triangles; more make the map dear to fit
-// As many as there were at the fewest, and a share of the triangles: where the map itself is at
-// fault, splitting makes ever more. A few come and go before the last is gone.
-constexpr double kMoreCrossing = 1.5, kSomeCrossing = 0.004;
+// As many as there were at the fewest, and some, or a share of the triangles: where the map itself
+// is at fault, splitting makes ever more. A few come and go before the last is gone.
+constexpr double kMoreCrossing = 1.5, kSomeCrossing = 4, kSomeShare = 0.004;
 
 std::uint64_t keyOf(int i, int j) {
   return static_cast<std::uint64_t>(std::min(i, j)) << 32 |
@@ -158,7 +158,7 @@ class Subdivision {
     fewestCrossing_ = std::min(fewestCrossing_, count);
     const auto all = static_cast<double>(out.size());
     if (count > kMostCrossing * all ||
-        count > kMoreCrossing * fewestCrossing_ + kSomeCrossing * all)
+        count > kMoreCrossing * fewestCrossing_ + std::max(kSomeCrossing, kSomeShare * all))
       out.assign(out.size(), 0);
     return out;
   }
