@@ -22,6 +22,10 @@ function(innermap_own_target target)
     # (ASAN_OPTIONS=handle_sigill=1). Code that words each finding takes twice as long to compile.
     target_compile_options(${target} PRIVATE -fsanitize=${INNERMAP_SANITIZE}
       -fsanitize-undefined-trap-on-error -fno-omit-frame-pointer)
+    if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+      target_compile_options(${target} PRIVATE
+        -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/sanitize_ignore.txt)
+    endif()
     target_link_options(${target} PRIVATE -fsanitize=${INNERMAP_SANITIZE})
   endif()
 endfunction()

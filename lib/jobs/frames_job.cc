@@ -51,6 +51,14 @@ std::vector<FrameResult> eachFrame(const std::vector<std::size_t>& wanted, const
   return out;
 }
 
+void writeFrame(std::int64_t number, const std::function<void()>& write, const std::string& unit) {
+  try {
+    write();
+  } catch (const FileError& error) {
+    throw OutputFailure(fmt::format("{}; stopped at {} {}", error.what(), unit, number));
+  }
+}
+
 FrameFits frameFits(const FrameFitter& fitter, std::vector<std::int64_t> numbers,
                     std::function<Mesh(std::size_t)> read,
                     std::function<void(std::size_t, const Mesh&, const FrameFit&)> fitted) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/frame_files.h"
+#include "innermap/core/error.h"
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/io/vdb_file.h"
 #include "innermap/transfer/push_pull.h"
@@ -32,6 +33,15 @@ struct FrameWatch {
 // be used, by a FileError or a DataError of `body`, has that as its error, and the others go on.
 std::vector<FrameResult> eachFrame(const std::vector<std::size_t>& wanted, const FrameWatch& watch,
                                    const std::function<void(std::size_t)>& body);
+
+// The result of a frame cannot be written (a full disk, say): the whole run ends.
+class OutputFailure : public Error {
+ public:
+  using Error::Error;
+};
+// Calls `write`; its FileErrors become OutputFailures that name the frame.
+void writeFrame(std::int64_t number, const std::function<void()>& write,
+                const std::string& unit = "frame");
 
 // The fits of frames as they are asked for. read: the frame at a place in `numbers`. fitted: told
 // of each. The fitter must outlive them.

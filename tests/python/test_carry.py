@@ -1,5 +1,6 @@
 """Grids, meshes, cells, files and points through a map, and frames: as the program does them."""
 
+import os
 import warnings
 
 import numpy as np
@@ -192,6 +193,19 @@ def test_marks_frames_left_out_and_warns_of_each():
         warnings.simplefilter("error")
         shapes.refuses((carry, RuntimeWarning, "frame 7"))
     shapes.refuses((lambda: innermap.deform((V, F), X, [0 * V], charges=30), innermap.DataError, ""))
+
+
+def test_ends_where_a_frame_cannot_be_written():
+    V, F = shapes.ball(2)
+    innermap.write_mesh("inner.obj", 0.5 * V, F)
+    for ending in ("vdb", "obj"):
+        os.mkdir(f"made.0001.{ending}")  # where the second frame should go
+    few = {"charges": 30, "output": "made.####.vdb"}
+    shapes.refuses(*[(carry, innermap.FileError, "stopped at frame 1") for carry in (
+        lambda: innermap.deform((V, F), smoke(), [V] * 3, grids="density", **few),
+        lambda: innermap.deform((V, F), "inner.obj", [V] * 3, **{**few, "output": "made.####.obj"}),
+        lambda: innermap.sequence((V, F), [V] * 3, resolution=16, **few))])
+    assert os.path.isfile("made.0000.vdb") and not os.path.exists("made.0002.vdb")
 
 
 def test_takes_point_caches():

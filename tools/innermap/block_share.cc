@@ -134,7 +134,7 @@ void makeShare(const ShareOptions& options, const BlockWork& work, Context& cont
     const GridBlock block = context.timed(work.stage, [&] { return work.make(blocks[index]); });
     const auto write = [&] { writeVdb(pattern.path(file.number), block.grids); };
     writeFrame(
-        file, [&] { context.timed("write", write); }, frames.unit);
+        file.number, [&] { context.timed("write", write); }, frames.unit);
     made = {{kTotals, block.totals}};
   };
   share.conclude(runFrames(frames, true, context, makeBlock,

@@ -138,7 +138,7 @@ class Deformer {
                          openvdb::DoubleMetadata(options_.framesPerSecond()));
     openvdb::MetaMap file;
     file.insertMeta(kInputs, openvdb::StringMetadata(inputs));
-    writeFrame(frame,
+    writeFrame(frame.number,
                [&] { writeGridFile(path, result.grids, options_.transfer.names, context_, file); });
     judge(result, *fit, frame.number);
     const InverseStatistics& s = result.statistics;

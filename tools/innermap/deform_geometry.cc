@@ -50,7 +50,7 @@ class Deformer {
           settings);
     });
     warnOf(*last_, job_.transfer, fmt::format("frame {}: ", frame.number), context_);
-    writeFrame(frame, [&] { write(*last_); });
+    writeFrame(frame.number, [&] { write(*last_); });
     return {{{}, fit->error, {}, {}},
             judgedFrame({fit.get(), frame.number}),
             fmt::format("{:>10} {:>10}", last_->ownPoints, last_->folded)};

@@ -77,15 +77,6 @@ void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, C
   sayBroken(results, unit, context);
 }
 
-void writeFrame(const FrameFile& frame, const std::function<void()>& write,
-                const std::string& unit) {
-  try {
-    write();
-  } catch (const FileError& error) {
-    throw OutputFailure(fmt::format("{}; stopped at {} {}", error.what(), unit, frame.number));
-  }
-}
-
 DeformedFrames deformFrames(const Frames& frames, const FrameOptions& options, bool stays,
                             const std::string& columns, Context& context,
                             const std::function<DeformedRow(std::size_t)>& body) {

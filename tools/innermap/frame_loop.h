@@ -11,12 +11,6 @@
 
 namespace innermap::tool {
 
-// The result of a frame cannot be written (a full disk, say): the whole run ends.
-class OutputFailure : public Error {
- public:
-  using Error::Error;
-};
-
 // Calls `body` for all wanted frames, with the frame's place in frames.all, and `ended` after each.
 // FileErrors and DataErrors of `body` make a broken frame. On cancelling, throws CancelledLate when
 // `stays` is true and frames were finished. Then calls concludeFrames().
@@ -28,10 +22,6 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
 // when all are.
 void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, Context& context,
                     const std::string& unit = "frame");
-
-// Calls `write`; its FileErrors become OutputFailures that name the frame.
-void writeFrame(const FrameFile& frame, const std::function<void()>& write,
-                const std::string& unit = "frame");
 
 // What `deform` makes of a frame.
 struct DeformedRow {

@@ -119,7 +119,7 @@ void run(const SequenceOptions& options, Context& context) {
     const std::shared_ptr<const FrameFit> fit = fits.at(index);
     const MapGrids grids = context.timed("evaluate", [&] { return evaluator.evaluate(*fit); });
     if (!options.grids.empty())
-      writeFrame(frame, [&] {
+      writeFrame(frame.number, [&] {
         writeGridFile(pattern.path(frame.number), evaluator.grids({fit.get(), frame.number}, grids),
                       options.evaluation.names, context);
       });

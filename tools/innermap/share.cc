@@ -251,7 +251,7 @@ void FrameShare::ended(const FrameResult& result, PartValues values) {
   warnings_ = report.warnings.size();
   seconds_ = report.seconds;
   writeFrame(
-      result.file, [&] { folder_->write(part); }, frames_.unit);
+      result.file.number, [&] { folder_->write(part); }, frames_.unit);
 }
 
 void FrameShare::conclude(const std::vector<FrameResult>& results) {

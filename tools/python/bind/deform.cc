@@ -93,7 +93,8 @@ py::object Deformation::grids(const py::object& what,
       VdbWriteSettings writing;
       writing.names = o_.names;
       if (pattern)
-        writeVdb(pattern->path(frame.fit.number), result.grids, {}, writing);
+        writeFrame(frame.fit.number,
+                   [&] { writeVdb(pattern->path(frame.fit.number), result.grids, {}, writing); });
       else
         results.push_back(std::move(result));
       return row;
@@ -147,10 +148,12 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
         fitterOf(makeSourceBoundary(rest_), o_.fitting, geometryMemory(from)), outside_);
     return table(carrier, [&](std::int64_t number, const FrameFit& fit, const PointPusher& pusher) {
       const HarmonicMap map(fit.field);
-      carryFile(from, pattern.path(number), reading, {0, o_.splats, fit.injectivity.mirrored},
-                [&](const Points& points, bool jacobians) {
-                  return pusher.push(map, points, jacobians);
-                });
+      writeFrame(number, [&] {
+        carryFile(from, pattern.path(number), reading, {0, o_.splats, fit.injectivity.mirrored},
+                  [&](const Points& points, bool jacobians) {
+                    return pusher.push(map, points, jacobians);
+                  });
+      });
     });
   });
   return made.dict();

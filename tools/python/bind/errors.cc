@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "innermap/core/error.h"
+#include "jobs/frames_job.h"
 
 namespace py = pybind11;
 
@@ -41,6 +42,8 @@ void translate(std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-v
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const FileError& e) {
+    raise(classes.file, e);
+  } catch (const OutputFailure& e) {
     raise(classes.file, e);
   } catch (const DataError& e) {
     raise(classes.data, e);

@@ -66,7 +66,9 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
       VdbWriteSettings writing;
       writing.names = o.names;
       if (pattern)
-        writeVdb(pattern->path(frame.fit.number), evaluator.grids(frame.fit, grids), {}, writing);
+        writeFrame(frame.fit.number, [&] {
+          writeVdb(pattern->path(frame.fit.number), evaluator.grids(frame.fit, grids), {}, writing);
+        });
       return measuresOf(*frame.fit.fit, grids);
     });
     out.general = evaluator.warnings();
