@@ -10,7 +10,6 @@ from scenes import around, dent, kinked, unrolled_ring, write_png
 # Each from the inputs and what those before it wrote: a kink at which charges are refined, a dent that
 # folds, a texture that meets itself along seams.
 JOBS = [
-    "fit ball.obj kinked.obj -o shell.ply --charges 400",
     "fit ball.obj kinked.obj -o m.ply --tolerance 3e-4 --interpolation linear",
     "map ball.obj kinked.obj -o out --charges 400 --resolution 32",
     "voxelize ball.obj -o in.vdb --resolution 40 --fog",

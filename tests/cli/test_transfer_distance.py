@@ -61,10 +61,10 @@ assert seen == own.activeVoxelCount()
 
 def test_settings():
     ellipsoid_map()
-    innermap("transfer-distance", "map.ply", "-o", "out", "--voxel-size", "0.1", "--range", "0,3",
+    innermap("transfer-distance", "map.ply", "-o", "out", "--voxel-size", "0.2", "--range", "0,3",
              "--section", "x=0.3")
     report = cli.read_json("out/report.json")
-    assert report["grid"]["voxel_size"] == report["grid"]["target_voxel_size"] == 0.1
+    assert report["grid"]["voxel_size"] == report["grid"]["target_voxel_size"] == 0.2
     assert report["distance"]["range"] == [0, 3]
     shutil.rmtree("out")
     innermap("transfer-distance", "map.ply", "-o", "out", "--dry-run")

@@ -17,7 +17,7 @@ COMMANDS = {
     "fit": ["fit", "I/ball.obj", "I/egg.obj", "-o", "O/m.ply", "--charges", "300", "--best-effort",
             "--report", "O/r.json"],
     "evaluate": ["evaluate", "I/map.ply", "-o", "O/m.vdb", "--resolution", "30"],
-    "correspond": ["correspond", "I/ball.obj", "I/cube.obj", "-o", "O/c.ply", "--picture",
+    "correspond": ["correspond", "I/round.obj", "I/oval.obj", "-o", "O/c.ply", "--picture",
                    "O/c.png"],
     "sphere": ["sphere", "I/ball.obj", "-o", "O/s.ply"],
     "sequence": ["sequence", "I/ball.obj", "I/frames", "-o", "O/q", "--resolution", "16",

@@ -20,7 +20,7 @@ import innermap
 import shapes
 from test_calls import environment
 
-COUNT, SEED = 120, 1  # of calls that tests/run tries
+COUNT, SEED = 60, 1  # of calls that tests/run tries
 LONGEST = 1.0  # seconds of a call that takes what is odd
 
 

@@ -132,7 +132,7 @@ HarmonicMap manyCharges() {
   return HarmonicMap(HarmonicField(sources, weights, affineOf(kIdentity)));
 }
 
-TEST(EvaluateMap, ManyChargesAreSummedToTheAccuracy) {
+TEST(EvaluateMapRelease, ManyChargesAreSummedToTheAccuracy) {
   const HarmonicMap map = manyCharges();
   const Solid solid(cube());
   const openvdb::FloatGrid::Ptr surface = levelSet(solid, 48);

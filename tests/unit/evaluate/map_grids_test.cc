@@ -38,7 +38,7 @@ TEST(MapGrids, HoldTheMapAndItsTotals) {
 }
 
 // Floats that far are 0.25 apart, the ball is 2 across.
-TEST(MapGrids, HoldPositionsFarFromTheOrigin) {
+TEST(MapGridsRelease, HoldPositionsFarFromTheOrigin) {
   const Vec3 away{4e6, -3e6, 1e5};
   const Mesh near = ball(2), source = moved(near, [&](const Vec3&p) { return p + away; });
   const auto map = [&](const Vec3& p) { return affineMap(p - away) + away; };
@@ -111,7 +111,7 @@ TEST(MapGrids, CellsThatOverlapAreTold) {
 
 // Cubes about which nothing is proven, and one that is proven folded though the determinant there,
 // of all steps together, is above 0.
-TEST(MapGrids, MarkTheCellsOfAProof) {
+TEST(MapGridsRelease, MarkTheCellsOfAProof) {
   MapFit fit = fitMap(ball(3), ball(3));
   const SolidGrids whole = evaluateOnGrid(fit, {.resolution = 32});
   EXPECT_FALSE(whole.undecided);
@@ -144,7 +144,7 @@ TEST(MapGrids, MarkTheCellsOfAProof) {
 }
 
 // The target shrinks by a tenth after the fit, so that the images of a shell lie outside it.
-TEST(MapGrids, MarkWhatLandsOutsideTheTarget) {
+TEST(MapGridsRelease, MarkWhatLandsOutsideTheTarget) {
   const Mesh source = ball(3);
   MapFit fit = fitMap(source, source);
   EXPECT_FALSE(evaluateOnGrid(fit, {.resolution = 32}).outside);

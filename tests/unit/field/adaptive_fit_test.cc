@@ -71,7 +71,7 @@ struct Ball {
   }
 };
 
-TEST(AdaptiveFit, MeetsTheToleranceWithChargesWhereTheKinkIs) {
+TEST(AdaptiveFitRelease, MeetsTheToleranceWithChargesWhereTheKinkIs) {
   Ball ball;
   ball.settings.tolerance = 2e-4;
   const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
@@ -139,7 +139,7 @@ TEST(AdaptiveFit, SaysWhichLimitItReached) {
   test::expectOverLimit(1000, [&] { fitToTolerance(ball.problem, ball.settings); });
 }
 
-TEST(AdaptiveFit, EndsWhereItIsToldToAfterAnyRound) {
+TEST(AdaptiveFitRelease, EndsWhereItIsToldToAfterAnyRound) {
   Ball ball;
   ball.settings.tolerance = 2e-4;
   int asked = 0, last = 1000;
@@ -186,7 +186,7 @@ TEST(AdaptiveFit, NoRoomForFinerLevelsIsNoGain) {
 }
 
 // A level that finds no room in a gap is passed over, and the next one tried.
-TEST(AdaptiveFit, GoesOnBelowALevelWithoutRoom) {
+TEST(AdaptiveFitRelease, GoesOnBelowALevelWithoutRoom) {
   Ball ball;
   ball.settings.tolerance = 4e-4;
   const auto place = ball.problem.placeSources;
@@ -204,7 +204,7 @@ TEST(AdaptiveFit, GoesOnBelowALevelWithoutRoom) {
 
 // Quarters are moved along each other: no charges meet that, and finer ones about the lines between
 // them are no better.
-TEST(AdaptiveFit, DoesNotChaseJumps) {
+TEST(AdaptiveFitRelease, DoesNotChaseJumps) {
   const auto split = [](const Points& points) {
     Matrix v = testing::harmonicMapValues(points);
     for (std::size_t i = 0; i < points.size(); ++i) {

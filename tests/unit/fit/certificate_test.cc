@@ -169,7 +169,7 @@ TEST(Certificate, FindsWhatStandsOutBesideAVertex) {
   EXPECT_LT(found.searched, kFreshSamples);
 }
 
-TEST(Certificate, IsTheSameForAnyNumberOfThreads) {
+TEST(CertificateRelease, IsTheSameForAnyNumberOfThreads) {
   FitMapSettings settings{.oneToOne = OneToOne::off};
   settings.shell.emplace();
   settings.shell->sources = 100;

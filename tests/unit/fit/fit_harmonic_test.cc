@@ -133,7 +133,7 @@ TEST(FitHarmonicRelease, ValuesFromAFunctionAreMetToAMillionth) {
     expectWithin(mesh, kPolynomial, kNowhere, 1e-6, 1e-5);
 }
 
-TEST(FitHarmonic, InsulatedSidesOfABox) {
+TEST(FitHarmonicRelease, InsulatedSidesOfABox) {
   const Mesh mesh = shapes::box({0, 0, 0}, {1, 1, 1});
   expectWithin(
       mesh, kInsulated, [](const Vec3&, const Vec3& n) { return std::abs(n.z) < 0.5; }, 3e-4, 1e-3);
@@ -202,7 +202,7 @@ TEST(FitHarmonicRelease, FacetsOfASmoothSideTakeFewCharges) {
 
 // Where values and fluxes meet the field goes as the root of the distance: its error is largest
 // there, and the bound knows.
-TEST(FitHarmonic, TheBoundHoldsWhereTheFieldIsSingular) {
+TEST(FitHarmonicRelease, TheBoundHoldsWhereTheFieldIsSingular) {
   const Mesh mesh = shapes::box({-1, 0, -0.5}, {1, 1, 0.5});
   // The lower side is split where values end.
   Mesh split;
@@ -238,7 +238,7 @@ TEST(FitHarmonic, TheBoundHoldsWhereTheFieldIsSingular) {
 }
 
 // Of corners: values jump from triangle to triangle.
-TEST(FitHarmonic, ChannelsOfGroupsSumUpToOne) {
+TEST(FitHarmonicRelease, ChannelsOfGroupsSumUpToOne) {
   const Mesh mesh = shapes::box({-1, -0.5, -0.5}, {1, 0.5, 0.5});
   BoundaryConditions conditions{.values = Matrix(3 * mesh.triangles.size(), 2)};
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
@@ -279,7 +279,7 @@ TEST(FitHarmonic, CornersOfAnOpenMeshHaveValues) {
 
 // 0 on a box, 1 on another that stands in it: no harmonic field meets that along the line where
 // they cross.
-TEST(FitHarmonic, SaysWhereValuesJump) {
+TEST(FitHarmonicRelease, SaysWhereValuesJump) {
   const Mesh mesh = shapes::joined(shapes::box({-1, -1, -1}, {1, 1, 1}),
                                    shapes::box({-0.4, -0.3, 0.5}, {0.4, 0.3, 2}));
   BoundaryConditions conditions{.values = Matrix(mesh.vertices.size(), 1)};

@@ -45,7 +45,7 @@ double chordError(const Mesh& mesh, double diagonal) {
 }
 
 // The certificate is against the triangles, and bounds the error inside up to what they cut off.
-TEST(FitMap, CertificateBoundsTheErrorInside) {
+TEST(FitMapRelease, CertificateBoundsTheErrorInside) {
   const Mesh source = ball();
   const Mesh target = moved(source, harmonicPolynomial);
   for (const Interpolation interpolation : {Interpolation::linear, Interpolation::automatic}) {
@@ -101,7 +101,7 @@ TEST(FitMapRelease, GoesInStepsWhereOneMapFolds) {
   }
 }
 
-TEST(FitMap, StepsThatDoNotFitAreLeft) {
+TEST(FitMapRelease, StepsThatDoNotFitAreLeft) {
   const Mesh source = ball(4);
   const MemoryLimit limit(kStepsMemory);
   const MapFit fit = fitMap(source, moved(source, dented), {.tolerance = 1e-2});
@@ -124,7 +124,7 @@ TEST(FitMapRelease, StepsAreCertifiedEndToEnd) {
   EXPECT_LT(farthest / fit.boundary.target.diagonal, 2 * fit.error.max);
 }
 
-TEST(FitMap, SaysWhatItKnowsOfOneToOne) {
+TEST(FitMapRelease, SaysWhatItKnowsOfOneToOne) {
   const Mesh source = ball();
   const Injectivity known = fitMap(source, moved(source, harmonicPolynomial), {}).injectivity;
   // The determinant of harmonicPolynomial is about 1 + 0.2 x, and 0.796 at x = -1.
@@ -150,7 +150,7 @@ TEST(FitMap, OneStepIsEnoughForGentleMaps) {
                SettingError);
 }
 
-TEST(FitMap, ShellsOfMoreChargesAreMoreExact) {
+TEST(FitMapRelease, ShellsOfMoreChargesAreMoreExact) {
   const Mesh source = ball();
   const Mesh target = moved(source, harmonicPolynomial);
   FitMapSettings settings;
@@ -181,7 +181,7 @@ TEST(FitMap, ChargesOnASphere) {
   EXPECT_LT(errorInside(fit, harmonicPolynomial), 1e-3);
 }
 
-TEST(FitMap, AToleranceThatCannotBeMetIsSaidNotThrown) {
+TEST(FitMapRelease, AToleranceThatCannotBeMetIsSaidNotThrown) {
   Mesh source = ball(2);
   Mesh target = source;
   for (std::size_t v = 0; v < target.vertices.size(); v += 2)
@@ -196,7 +196,7 @@ TEST(FitMap, AToleranceThatCannotBeMetIsSaidNotThrown) {
             fit.facts.end());
 }
 
-TEST(FitMap, SameForAnyNumberOfThreads) {
+TEST(FitMapRelease, SameForAnyNumberOfThreads) {
   const Mesh source = ball(2);
   const Mesh target = moved(source, harmonicPolynomial);
   const auto weights = [&](int threads) {

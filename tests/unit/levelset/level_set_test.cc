@@ -67,7 +67,7 @@ TEST(LevelSet, BandIsAsWideAsAsked) {
   }
 }
 
-TEST(LevelSet, InteriorVoxelsAreCountedInTheBandAndBelow) {
+TEST(LevelSetRelease, InteriorVoxelsAreCountedInTheBandAndBelow) {
   for (const double width : {2.0, 20.0}) {  // with and without tiles inside
     LevelSetSettings settings = resolution(48);
     settings.halfWidth = width;

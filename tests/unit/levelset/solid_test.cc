@@ -152,7 +152,7 @@ TEST(Solid, HolesAreCapped) {
   EXPECT_GT(solid.volume(), 0.9 * signedVolume(whole));
 }
 
-TEST(Solid, ScaleAndPlaceDoNotMatter) {
+TEST(SolidRelease, ScaleAndPlaceDoNotMatter) {
   const Mesh mesh = shapes::joined(shapes::torus(60, 30), shapes::icosphere(3, 0.5, {1, 0.1, 0.2}));
   const Solid solid(mesh);
   ASSERT_TRUE(solid.overlaps());
@@ -192,7 +192,7 @@ TEST(Solid, SettingsAndCancelling) {
   test::expectCancels([&] { Solid(mesh, settings); });
 }
 
-TEST(Solid, ManyCrossingTrianglesStayBounded) {
+TEST(SolidRelease, ManyCrossingTrianglesStayBounded) {
   // Closed tetrahedra at random, all through each other.
   const CounterRandom random(5, 5);
   Mesh mesh;

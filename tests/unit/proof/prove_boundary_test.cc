@@ -38,7 +38,7 @@ double sampledError(const ComposedMap& map, const Mesh& mesh, const Points& targ
   return most / diagonalOf(target);
 }
 
-TEST(ProveBoundaryError, IsAboveEverySampleAndNearTheLargest) {
+TEST(ProveBoundaryErrorRelease, IsAboveEverySampleAndNearTheLargest) {
   for (std::uint64_t seed = 1; seed < 5; ++seed) {
     const Mesh mesh = seed % 2 ? shapes::icosphere(2) : shapes::torus(24, 12);
     const HarmonicMap first =
@@ -64,7 +64,7 @@ TEST(ProveBoundaryError, IsAboveEverySampleAndNearTheLargest) {
 }
 
 // Edges of 0.15 beside charges 0.03 away: each triangle has to be cut before it has a bound.
-TEST(ProveBoundaryError, TrianglesLargerThanTheDistanceOfChargesHaveABound) {
+TEST(ProveBoundaryErrorRelease, TrianglesLargerThanTheDistanceOfChargesHaveABound) {
   const Mesh mesh = shapes::icosphere(3);
   const ComposedMap map(mapOf(affineOf(kIdentity), testing::chargesAbout(2000, 1.03, 1e-4, 3)));
   Points target;

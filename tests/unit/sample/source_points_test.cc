@@ -20,7 +20,7 @@ double leastDistance(const Points& points) {
   return least;
 }
 
-TEST(SourceShell, StandsAtTheDistanceOutside) {
+TEST(SourceShellRelease, StandsAtTheDistanceOutside) {
   const Mesh overlapping =
       shapes::joined(shapes::torus(60, 30), shapes::icosphere(3, 0.5, {1, 0.1, 0.2}));
   for (const Mesh& mesh : {shapes::torus(60, 30), shapes::box({0, 0, 0}, {1, 2, 3}), overlapping}) {

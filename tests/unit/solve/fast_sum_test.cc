@@ -315,7 +315,7 @@ FieldSamples onLattice(const FastSum& sum, const LatticeBlocks& lattice,
   return out;
 }
 
-TEST(FastSum, LatticeAgreesWithPlainSums) {
+TEST(FastSumRelease, LatticeAgreesWithPlainSums) {
   const LatticeBlocks lattice = ballOfBlocks(48);
   const Points sources = testing::spherePoints(2000, 1.05), points = pointsOf(lattice);
   for (const std::size_t channels : {1, 3, 5}) {

@@ -106,7 +106,7 @@ TEST(MapQuality, OfAnAffineMapIsItsSingularValues) {
   EXPECT_NEAR(q.triangleStretch.max, 2 * std::sqrt(r2), 1e-9);
 }
 
-TEST(MapQuality, OfTheComposedMapIsThatOfItsDifferences) {
+TEST(MapQualityRelease, OfTheComposedMapIsThatOfItsDifferences) {
   // No triangle of the one lies in one triangle of the other: the derivative of rays counts. The
   // energy is what small triangles of a much finer A have.
   const SurfaceShells a = closedSurfaces(shapes::icosphere(2)),

@@ -105,7 +105,7 @@ Mesh clamp(double gap) {
   return mesh;
 }
 
-TEST(Tetrahedralize, NarrowGapsStayOpen) {
+TEST(TetrahedralizeRelease, NarrowGapsStayOpen) {
   for (const int n : {16, 24, 37}) {
     const Tetrahedralization result = tetrahedralization(Solid(clamp(0.3 / n)), across(n));
     expectWellShaped(result.mesh);

@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Carry, VectorTypes,
                                          openvdb::VEC_COVARIANT_NORMALIZE,
                                          openvdb::VEC_CONTRAVARIANT_RELATIVE));
 
-TEST(Carry, PositionsAreMapped) {
+TEST(CarryRelease, PositionsAreMapped) {
   const Pair pair(chargedMap(), 32);
   // Positions inside the ball: the points themselves, drawn in by a third.
   auto grid = sampled<openvdb::Vec3SGrid>(*pair.from, "P", [](const Vec3& p) {
@@ -100,7 +100,7 @@ TEST(Carry, PositionsAreMapped) {
   EXPECT_LT(error, 2e-3);  // sampled linearly once more
 }
 
-TEST(Carry, PullIsTheOtherWayRound) {
+TEST(CarryRelease, PullIsTheOtherWayRound) {
   const Pair pair(chargedMap(), 48);
   for (const openvdb::VecType type :
        {openvdb::VEC_COVARIANT, openvdb::VEC_CONTRAVARIANT_RELATIVE}) {
@@ -247,7 +247,7 @@ TEST(Carry, MasksMoveTheirActiveVoxels) {
   EXPECT_EQ(wrong, 0u);
 }
 
-TEST(Carry, LevelSetsBecomeDistancesAgain) {
+TEST(CarryRelease, LevelSetsBecomeDistancesAgain) {
   const Pair pair(affineMap({{{1.5, 0, 0}, {0, 1.5, 0}, {0, 0, 1.5}}}, {0, 0, 0}), 64);
   const Solid inner(ball(0.6));
   const auto out = pair.push({makeLevelSet(inner, {.voxelSize = pair.from->voxelSize()[0]})}, {});

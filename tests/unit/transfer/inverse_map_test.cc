@@ -58,7 +58,7 @@ TEST(InverseMap, BringsEachVoxelBack) {
   EXPECT_LE(slope, 1e-5);
 }
 
-TEST(InverseMap, AffineMapsAreInvertedToRounding) {
+TEST(InverseMapRelease, AffineMapsAreInvertedToRounding) {
   const CounterRandom random(20261121, 0);
   for (int trial = 0; trial < 5; ++trial) {
     Mat3 m;
@@ -103,7 +103,7 @@ TEST(InverseMap, FoldsAreCountedAndFilled) {
 
 // Half of the lattice cut away: from its edge Newton's steps do not reach the far end, but from the
 // neighbours that they did reach they do.
-TEST(InverseMap, WhatIsNotInvertedStartsAgainFromItsNeighbours) {
+TEST(InverseMapRelease, WhatIsNotInvertedStartsAgainFromItsNeighbours) {
   const HarmonicMap map = chargedMap();
   const Solid source(ball()), target(moved(ball(), map));
   SourceLattice half = latticeOf(source, 128);

@@ -25,7 +25,7 @@ double pulledError(int resolution) {
 
 TEST(Pull, SecondOrder) { EXPECT_GT(pulledError(20) / pulledError(40), 3); }
 
-TEST(Pull, PushAfterPullReturnsTheField) {
+TEST(PullRelease, PushAfterPullReturnsTheField) {
   const HarmonicMap map = chargedMap();
   const Solid source(ball()), target(moved(ball(), map));
   const auto from = levelSetOf(source, 64), to = levelSetOf(target, 64);
@@ -41,7 +41,7 @@ TEST(Pull, PushAfterPullReturnsTheField) {
   EXPECT_LT(error, 2 * h * h / 8 * 12 * 1.5);
 }
 
-TEST(Pull, AroundTheSolidToo) {
+TEST(PullRelease, AroundTheSolidToo) {
   const HarmonicMap map = affineMap({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {5, 0, 0});
   const Solid source(ball());
   auto grid = openvdb::FloatGrid::create();

@@ -95,7 +95,7 @@ TEST(PushDensityRelease, KeepsMassWhateverTheMap) {
 }
 
 // (x, y, z^2 - x^2) folds at z = 0, (x, y, 0) leaves no volume at all, mirrored is none folded.
-TEST(PushDensity, KeepsMassInFolds) {
+TEST(PushDensityRelease, KeepsMassInFolds) {
   const Mesh around = shapes::box({-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5});
   const HarmonicMap folded = fittedMap([](const Vec3& p) {
     return Vec3{p.x, p.y, p.z * p.z - p.x * p.x};
@@ -172,7 +172,7 @@ double smoothError(int resolution) {
   return std::sqrt(squares / count);
 }
 
-TEST(PushDensity, Converges) {
+TEST(PushDensityRelease, Converges) {
   const double coarse = smoothError(24), fine = smoothError(48);
   EXPECT_GT(coarse / fine, 2.5);
   EXPECT_LT(fine, 5e-4);
@@ -209,7 +209,7 @@ TEST(PushDensity, FogIsCarriedWithItsEdge) {
   EXPECT_NEAR(out.masses.at(0).after / source.volume(), 1, 2e-3);
 }
 
-TEST(PushDensity, WhatLiesAroundIsKeptToo) {
+TEST(PushDensityRelease, WhatLiesAroundIsKeptToo) {
   const HarmonicMap map = chargedMap();
   const Solid source(ball());
   const auto to = levelSetOf(Solid(moved(ball(), map)), 24);

@@ -43,7 +43,7 @@ TEST(PushRelease, ScalarsConvergeWithTheOrderOfTheSampling) {
   }
 }
 
-TEST(Push, RigidMotionsAndScalings) {
+TEST(PushRelease, RigidMotionsAndScalings) {
   const Mat3 r = rotation(0.5, 1.1);
   Mat3 scaled = r;
   for (auto& row : scaled)
@@ -64,7 +64,7 @@ TEST(Push, RigidMotionsAndScalings) {
 }
 
 // A target that the map misses by more of the source's voxels than attributes are continued by.
-TEST(Push, AttributesDoNotMeetTheBackgroundWhereTheTargetIsMissed) {
+TEST(PushRelease, AttributesDoNotMeetTheBackgroundWhereTheTargetIsMissed) {
   Mat3 crushed{}, larger{};
   for (std::size_t k = 0; k < 3; ++k) {
     crushed[k][k] = 0.1;
@@ -209,7 +209,7 @@ TEST(PushRelease, TwistBendAndPolynomialAgreeWithTheirFormulas) {
 
 // A rigid transfer leaves the energy of a deformation as it was: the energy densities of a map,
 // pushed along a rigid motion and integrated.
-TEST(Push, RigidTransferKeepsTheEnergy) {
+TEST(PushRelease, RigidTransferKeepsTheEnergy) {
   const HarmonicMap map = affineMap(rotation(0.3, -0.8), {1, 2, 3});
   const Solid source(ball()), target(moved(ball(), map));
   const auto from = levelSetOf(source, 64), to = levelSetOf(target, 64);
@@ -244,7 +244,7 @@ TEST(Push, FieldsAreCarriedAlong) {
 }
 
 // As far as it goes while the shutter is open, and no farther.
-TEST(Push, VelocitiesGoOnAroundTheTarget) {
+TEST(PushRelease, VelocitiesGoOnAroundTheTarget) {
   const HarmonicMap map = chargedMap();
   const Solid source(ball());
   const auto to = levelSetOf(Solid(moved(ball(), map)), 24);
@@ -368,7 +368,9 @@ TEST_F(FramePushes, IsThePushOnTheRestPosesLattice) {
   EXPECT_EQ(out.activeVoxelCount(), plain.grids[0]->activeVoxelCount());
 }
 
-TEST_F(FramePushes, FadesToEachFramesOwnMotion) {
+using FramePushesRelease = FramePushes;
+
+TEST_F(FramePushesRelease, FadesToEachFramesOwnMotion) {
   FramePushSettings fading = settings();
   fading.push.outside.distance = 0.1;
   fading.fadeToFitted = true;

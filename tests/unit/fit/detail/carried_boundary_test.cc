@@ -89,9 +89,11 @@ TEST_F(Carried, WaysMakeUpForWhatIsOff) {
   }
 }
 
+using CarriedRelease = Carried;
+
 // The mesh about the image is coarse: where it lies within the image, charges as near to it as it
 // is off would stand inside.
-TEST_F(Carried, NoChargeStandsInsideTheExactImage) {
+TEST_F(CarriedRelease, NoChargeStandsInsideTheExactImage) {
   settings.chord = 10;
   const Solid coarse(shapes::icosphere(1));
   CarriedBoundary boundary(coarse, settings);
@@ -116,7 +118,7 @@ TEST_F(Carried, NoChargeStandsInsideTheExactImage) {
 // maximum principle in each step's own solid bounds the error inside by e + 2 L (e1 + e2), L the
 // polynomials' Lipschitz constants together; and ways are linear between vertices, which cuts off
 // an eighth of the squared edge times the largest second derivative, three times.
-TEST_F(Carried, KnownHarmonicStepsCompose) {
+TEST_F(CarriedRelease, KnownHarmonicStepsCompose) {
   constexpr double kTolerance = 1e-3, kLipschitz = 1.4 * 1.4, kSecond = 0.25;
   const Mesh source = shapes::icosphere(5);
   double edge = 0;

@@ -194,7 +194,7 @@ TEST(StepFit, JacobiansAreTheDerivative) {
   EXPECT_LT(largest, 1e-9);
 }
 
-TEST(StepFit, SameForAnyNumberOfThreads) {
+TEST(StepFitRelease, SameForAnyNumberOfThreads) {
   const Mesh source = bar();
   const BoundaryPair pair = makeBoundaryPair(source, moved(source, bent(1)));
   const auto at = [&](int threads) {

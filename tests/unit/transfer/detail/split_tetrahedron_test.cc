@@ -73,7 +73,7 @@ TEST(SplitTetrahedron, PartsMakeUpTheWhole) {
 }
 
 // Against points spread evenly through the tetrahedron.
-TEST(SplitTetrahedron, EachVoxelGetsWhatLiesInIt) {
+TEST(SplitTetrahedronRelease, EachVoxelGetsWhatLiesInIt) {
   const std::uint64_t seed = 21;
   SCOPED_TRACE(seed);
   test::Draws random(seed);

@@ -86,7 +86,7 @@ TEST(SphereLayout, Cancels) {
   test::expectCancels([&] { layOutSphere(shapes::closed(shapes::icosphere(3), 0)); });
 }
 
-TEST(SphereLayout, RealMeshes) {
+TEST(SphereLayoutRelease, RealMeshes) {
   const std::string models = INNERMAP_MODELS;
   if (!std::filesystem::exists(models)) GTEST_SKIP() << "no ../shared/models";
   for (const char* name :
