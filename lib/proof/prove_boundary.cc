@@ -36,8 +36,8 @@ constexpr double kLeastSquare = 1e-4;
 // Parts of a triangle after so many halvings are looked at with finer expansions: what others cut
 // off does not shrink with them.
 constexpr int kFineHalvings = 6;
-// Pieces without a bound that are cut in one go: the more, the later it is known that a map in steps
-// has none.
+// Pieces without a bound that are cut in one go: the more, the later it is known that a map in
+// steps has none.
 constexpr std::uint64_t kDive = 1024;
 
 double areaOf(const SurfacePiece& piece) {

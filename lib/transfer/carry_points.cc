@@ -25,6 +25,8 @@ constexpr std::size_t kTogether = std::size_t{1} << 18;  // points of one pass, 
 constexpr double kOutside = 1e-6;                        // of the source's diagonal
 constexpr double kInverted = 1e-5;                       // of the target's diagonal
 constexpr double kSkinVoxels = 3;                        // of the target, where points are pulled
+// Of the inverse on the grid, which gives starts, no more: in its voxels; of the target's extent.
+constexpr double kStartTolerance = 0.01, kStartAccuracy = 1e-5;
 constexpr std::size_t kMostStepByStep = 2000;
 
 void requireFinite(const Points& points) {
@@ -237,7 +239,8 @@ struct PointPuller::Data {
     InverseSettings inverse;
     inverse.outside = settings.outside;
     inverse.skin = kSkinVoxels;
-    inverse.accuracy = std::max(settings.accuracy, 1e-7);  // starts, no more
+    inverse.tolerance = kStartTolerance;
+    inverse.accuracy = std::max(settings.accuracy, kStartAccuracy);
     return invertMap(map, source, lattice, *coarseLevelSet(target, resolutionOf(settings)),
                      inverse);
   }
