@@ -31,9 +31,9 @@ constexpr double kKept = 0.375, kMended = 1.25;
 // Times its own tolerance that a step leaves, and of the whole that the steps' errors add up to:
 // beyond that, or where the map folds many points, more steps do not help, and the last one is made
 // at once. Steps that are met add up to kShare; in maps that were kept, those that missed left 2.2
-// times what they may. Where an intermediate shape runs through itself a step leaves ten to thirty
+// times what they may. Where an intermediate shape runs through itself a step leaves five to thirty
 // times as much, and so do those after it.
-constexpr double kLost = 8;
+constexpr double kLeap = 4, kLost = 8;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 // Of the work until there to the work in all, by the way until there: the nearer to the target, the
@@ -215,7 +215,7 @@ class StepFitter {
   void take(Step step, bool last) {
     missed_ += step.fit.error.p99;
     leapt_ = step.fit.end == AdaptiveEnd::noGain &&
-             step.fit.error.p99 > kLost * toleranceUntil(step.record.to);
+             step.fit.error.p99 > kLeap * toleranceUntil(step.record.to);
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
     folded_ = step.record.folded;
