@@ -192,7 +192,7 @@ TEST(Solid, SettingsAndCancelling) {
   test::expectCancels([&] { Solid(mesh, settings); });
 }
 
-TEST(SolidRelease, ManyCrossingTrianglesStayBounded) {
+TEST(Solid, ManyCrossingTrianglesStayBounded) {
   // Closed tetrahedra at random, all through each other.
   const CounterRandom random(5, 5);
   Mesh mesh;

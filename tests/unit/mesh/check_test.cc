@@ -184,7 +184,7 @@ TEST(Check, RandomSoupsDoNotBreakIt) {
   }
 }
 
-TEST(CheckModelsRelease, WhatIsKnownOfThem) {
+TEST(CheckModels, WhatIsKnownOfThem) {
   const std::string folder = INNERMAP_MODELS;
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   struct Known {

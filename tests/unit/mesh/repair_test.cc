@@ -285,7 +285,7 @@ TEST(Repair, CanBeCancelled) {
   test::expectCancels([&] { repair(cube()); });
 }
 
-TEST(RepairModelsRelease, AreSensibleSolids) {
+TEST(RepairModels, AreSensibleSolids) {
   const std::string folder = INNERMAP_MODELS;
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   struct Known {
