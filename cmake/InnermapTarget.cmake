@@ -22,6 +22,12 @@ function(innermap_own_target target)
     # (ASAN_OPTIONS=handle_sigill=1). Code that words each finding takes twice as long to compile.
     target_compile_options(${target} PRIVATE -fsanitize=${INNERMAP_SANITIZE}
       -fsanitize-undefined-trap-on-error -fno-omit-frame-pointer)
+    if(INNERMAP_SANITIZE MATCHES "address.*undefined")
+      # Checks at each access to memory, which the address sanitizer watches too, and which take a
+      # quarter of the time that the dearest files take to compile.
+      target_compile_options(${target} PRIVATE
+        -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow)
+    endif()
     if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
       target_compile_options(${target} PRIVATE
         -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/sanitize_ignore.txt)
