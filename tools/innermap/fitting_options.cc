@@ -115,6 +115,8 @@ std::vector<JobPhase> chargePhases(const FitMapSettings& settings, double places
   if (settings.oneToOne == OneToOne::off) return phases;
   phases.push_back(stageOf("going in steps", size));
   phases.back().perhaps = !laidOn;
+  phases.push_back(stageOf("going by smoothed shapes", size));
+  phases.back().perhaps = true;
   return phases;
 }
 

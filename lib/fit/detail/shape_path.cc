@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "fit/detail/shape_smoother.h"
 #include "fit/detail/triangle_turns.h"
 #include "innermap/core/error.h"
 
@@ -18,8 +19,6 @@ using Eigen::Vector3d;
 // Weight of the straight way of each vertex beside that of its edges: keeps parts that nothing
 // connects where they belong, and is too small to bend anything.
 constexpr double kStraight = 1e-6;
-// Cotangents of slivers are kept in these bounds. Any positive weights give both ends exactly.
-constexpr double kLeastCotangent = 0.02, kMostCotangent = 50;
 
 Vector3d vector(const Vec3& p) { return {p.x, p.y, p.z}; }
 Vec3 point(const Vector3d& v) { return {v[0], v[1], v[2]}; }
@@ -69,13 +68,10 @@ std::optional<Matrix3d> gradientOf(const Points& from, const Points& to, const T
   return after * before.inverse();
 }
 
+// Any positive weights give both ends exactly.
 void weigh(const Points& from, const Triangle& t, Deformation& out) {
-  for (int k = 0; k < 3; ++k) {  // the angle at the corner opposite to the edge after corner k
-    const Vec3 &a = from[t[k]], &b = from[t[(k + 1) % 3]], &c = from[t[(k + 2) % 3]];
-    const double area = norm(cross(a - c, b - c));
-    out.weight[k] = area > 0 ? std::clamp(dot(a - c, b - c) / area, kLeastCotangent, kMostCotangent)
-                             : kLeastCotangent;
-  }
+  for (int k = 0; k < 3; ++k)
+    out.weight[k] = edgeWeight(from[t[k]], from[t[(k + 1) % 3]], from[t[(k + 2) % 3]]);
 }
 
 std::vector<Deformation> deformationsOf(const Points& from, const Points& to,
@@ -146,6 +142,7 @@ struct ShapePath::Implementation {
   std::vector<Triangle> triangles;
   std::vector<Deformation> deformations;
   double straight = 0;  // the weight of a vertex's straight way
+  std::optional<ShapeSmoother> smoother;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
 
   void factor() {
@@ -169,7 +166,7 @@ struct ShapePath::Implementation {
 };
 
 ShapePath::ShapePath(const Points& from, const Points& to, const std::vector<Triangle>& triangles,
-                     double growth) {
+                     double growth, Between between) {
   auto out = std::make_unique<Implementation>();
   out->rest = alignment(from, to, triangles, growth);
   out->from = from;
@@ -177,6 +174,7 @@ ShapePath::ShapePath(const Points& from, const Points& to, const std::vector<Tri
   out->triangles = triangles;
   out->deformations = deformationsOf(from, out->to, triangles);
   out->factor();
+  if (between == Between::smoothed) out->smoother.emplace(from, out->to, triangles);
   implementation_ = std::move(out);
 }
 
@@ -207,7 +205,7 @@ Points ShapePath::at(double t) const {
   Points out(d.from.size());
   for (std::size_t v = 0; v < out.size(); ++v)
     out[v] = point(solved.row(static_cast<Eigen::Index>(v)).transpose());
-  return out;
+  return d.smoother ? d.smoother->smoothed(out, t) : out;
 }
 
 HarmonicField movedBy(const ScaledMotion& motion, const HarmonicField& field) {

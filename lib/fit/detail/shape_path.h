@@ -26,12 +26,16 @@ struct ScaledMotion {
   Vec3 operator()(const Vec3& p) const { return scale * (rotation * p) + translation; }
 };
 
+// smoothed: see shape_smoother.h. A longer way, which runs through itself where the other does only
+// if limbs or pits lie quite differently.
+enum class Between { interpolated, smoothed };
+
 class ShapePath {
  public:
   // from, to: positions of the vertices of `triangles`. growth: the cube root of the volumes'
   // ratio, above 0. Vertices in no triangle go straight.
   ShapePath(const Points& from, const Points& to, const std::vector<Triangle>& triangles,
-            double growth);
+            double growth, Between between = Between::interpolated);
   ~ShapePath();
   ShapePath(ShapePath&&) noexcept;
 

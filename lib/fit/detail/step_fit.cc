@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "fit/detail/carried_boundary.h"
@@ -11,31 +12,40 @@
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/fit/fit_map.h"
+#include "innermap/mesh/check.h"
 #include "innermap/proof/prove.h"
 
 namespace innermap {
 namespace {
 
 // Of the way: halves that are made where a coarse fit folds, and where only the full one does,
-// whose folds beside the surface smaller steps cure more seldom.
-constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
-// Of the tolerance: what a step before the last may leave, times its part of the way; what the last
-// one may leave. Where one step's errors are large the others' are too, and point the same way, so
-// they add up in full. Tolerances small enough for their sum cost more charges than a last step
-// that also mends what the others left.
-constexpr double kShare = 1.5, kLastShare = 0.6;
+// whose folds beside the surface smaller steps cure more seldom. Through smoothed shapes a limb
+// turns into a pit on a small part of the way.
+constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32, kOfSmoothed = 0.25;
+// Of the tolerance: what a step before the last may leave, times its part of the way, and at least,
+// through smoothed shapes; what the last one may leave. Where one step's errors are large the
+// others' are too, and point the same way, so they add up in full. Tolerances small enough for
+// their sum cost more charges than a last step that also mends what the others left; those of the
+// shortest steps would take twice the charges that the least share takes.
+constexpr double kShare = 1.5, kLeastShare = 0.05, kLastShare = 0.6;
 // Of the tolerance: what is left of a point's error, as mending all of it makes the map rough, with
 // many times the volume whose sense is undecided; and by how much a point is mended at most, as
 // what is farther off lies in creases, where charges do not help.
 constexpr double kKept = 0.375, kMended = 1.25;
 // Times its own tolerance that a step leaves, and of the whole that the steps' errors add up to:
-// beyond that, or where the map folds many points, more steps do not help, and the last one is made
-// at once. Steps that are met add up to kShare; in maps that were kept, those that missed left 2.2
+// beyond that, or where the map folds many points, the way is lost. Steps that are met add up to
+// kShare, or twice that where many are short; in maps that were kept, those that missed left 2.2
 // times what they may. Where an intermediate shape runs through itself a step leaves five to thirty
 // times as much, and so do those after it.
 constexpr double kLeap = 4, kLost = 8;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
+// The way goes through smoothed shapes at once where one of the others has more crossings a
+// triangle than that, and each of the smoothed ones at most so many times as many. Limbs that turn
+// into pits have 0.01 to 0.6, and smoothed mostly none; solids whose usual way is good have none,
+// or up to 0.0004.
+constexpr double kManyCrossings = 0.01, kFewerCrossings = 0.1;
+constexpr int kLooks = 8;
 // Of the work until there to the work in all, by the way until there: the nearer to the target, the
 // shorter the steps and the more charges they take.
 constexpr double kWorkPower = 2.4;
@@ -65,21 +75,25 @@ double growthOf(const BoundaryPair& pair) {
 
 class StepFitter {
  public:
-  StepFitter(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings)
+  StepFitter(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings,
+             Between between)
       : settings_(settings),
+        smoothed_(between == Between::smoothed),
         vertices_(pair.solid().repaired().mesh.vertices),
-        path_(vertices_, pair.target.moved, pair.solid().repaired().mesh.triangles, growthOf(pair)),
+        triangles_(pair.solid().repaired().mesh.triangles),
+        path_(vertices_, pair.target.moved, triangles_, growthOf(pair), between),
         unit_(pair.target.diagonal / path_.rest().scale),
         boundary_(pair.solid(), carrySettings()),
         inside_{inside, {}} {}
 
-  StepFit fit() {
+  // False once the way is lost, where its end is not reached.
+  bool go() {
     std::vector<double> ends{1};  // the next one last
     if (settings_.maxSteps > 1) ends.push_back(0.5);
-    bool hurries = false;  // one step does the rest of the way, for lack of time or hope
+    bool hurries = false;  // one step does the rest of the way, for lack of time
     double seconds = 0;    // of the last step, taken or not
     while (!ends.empty()) {
-      reportProgress("going in steps", std::pow(at_, kWorkPower));
+      reportGoing();
       if (!hurries && outOfTime(seconds)) {
         hurries = true;
         ends = {1};
@@ -92,17 +106,40 @@ class StepFitter {
       Step step = fitStep(end, may);
       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
       if (step.fit.end == AdaptiveEnd::stopped ||
-          (may && half >= kShortestFitted && foldsTooMuch(step))) {
+          (may && half >= shortest(kShortestFitted) && foldsTooMuch(step))) {
         ends.push_back((at_ + end) / 2);
         continue;
       }
       ends.pop_back();
       take(std::move(step), ends.empty());
-      if (isLost() && !ends.empty()) {
-        hurries = true;
-        ends = {1};
-      }
+      if (isLost() && !ends.empty()) return false;
     }
+    return true;
+  }
+
+  // Pairs of triangles that run through one another in the worst of the shapes on the way; over the
+  // number of triangles.
+  double mostCrossings() const {
+    std::size_t most = 0;
+    for (int i = 1; i < kLooks; ++i) {
+      std::size_t count = 0;
+      forEachSelfIntersection(path_.at(static_cast<double>(i) / kLooks), triangles_,
+                              [&](const Crossing&) { ++count; });
+      most = std::max(most, count);
+    }
+    return static_cast<double>(most) / static_cast<double>(triangles_.size());
+  }
+
+  // Whether smoothed shapes may help: they do not where charges are missing.
+  bool runsThroughItself() const { return leapt_ || folded_ > kManyFolds; }
+
+  // The rest of the way at once.
+  void jump() {
+    reportGoing();
+    take(fitStep(1, false), true);
+  }
+
+  StepFit result() {
     std::vector<HarmonicMap> steps = boundary_.steps();
     steps.back() = HarmonicMap(movedBy(path_.rest(), steps.back().field()));
     return {ComposedMap(std::move(steps)), std::move(records_),
@@ -118,6 +155,13 @@ class StepFitter {
     return s;
   }
 
+  void reportGoing() const {
+    reportProgress(smoothed_ ? "going by smoothed shapes" : "going in steps",
+                   std::pow(at_, kWorkPower));
+  }
+
+  double shortest(double share) const { return smoothed_ ? kOfSmoothed * share : share; }
+
   // Share of the points inside that may be folded after a step, if that gets so much of what is
   // left.
   double allowed(double share) const {
@@ -125,7 +169,8 @@ class StepFitter {
   }
 
   double toleranceUntil(double end) const {
-    const double share = end < 1 ? kShare * (end - at_) : kLastShare;
+    const double least = smoothed_ ? kLeastShare : 0;
+    const double share = end < 1 ? std::max(kShare * (end - at_), least) : kLastShare;
     return std::max(share * settings_.tolerance, kSmallestTolerance);
   }
 
@@ -153,9 +198,9 @@ class StepFitter {
     s.patience = last ? kLastPatience : kPatience;
     const double half = (to - at_) / 2;
     InsideAfter inside(*this);
-    if (mayHalve && half >= kShortest)
+    if (mayHalve && half >= shortest(kShortest))
       s.goOn = [this, half, &inside](const HarmonicField& field, int round) {
-        if (round > 1 && half < kShortestFitted) return true;
+        if (round > 1 && half < shortest(kShortestFitted)) return true;
         return foldedShare(inside.of(field).determinants, 1) <=
                allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
@@ -225,7 +270,9 @@ class StepFitter {
   }
 
   const StepFitSettings& settings_;
+  const bool smoothed_;
   const Points& vertices_;
+  const std::vector<Triangle>& triangles_;
   const ShapePath path_;
   const double unit_;
   CarriedBoundary boundary_;
@@ -242,7 +289,23 @@ class StepFitter {
 
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside,
                    const StepFitSettings& settings) {
-  return StepFitter(pair, inside, settings).fit();
+  StepFitter fitter(pair, inside, settings, Between::interpolated);
+  std::optional<StepFitter> smoothed;
+  const auto goSmoothed = [&] { return !outOfTime() && smoothed->go(); };
+  const double crossing = fitter.mostCrossings();
+  if (crossing > kManyCrossings) {
+    smoothed.emplace(pair, inside, settings, Between::smoothed);
+    if (smoothed->mostCrossings() > kFewerCrossings * crossing) smoothed.reset();
+  }
+  const bool first = smoothed.has_value();
+  if (first && goSmoothed()) return smoothed->result();
+  if (fitter.go()) return fitter.result();
+  if (!first && fitter.runsThroughItself()) {
+    smoothed.emplace(pair, inside, settings, Between::smoothed);
+    if (goSmoothed()) return smoothed->result();
+  }
+  fitter.jump();
+  return fitter.result();
 }
 
 }  // namespace innermap

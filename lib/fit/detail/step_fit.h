@@ -7,6 +7,7 @@
 #include "innermap/field/fit.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/fit/boundary_pair.h"
+#include "innermap/fit/fit_map.h"
 #include "innermap/fit/mapped_solid.h"
 
 namespace innermap {
@@ -16,7 +17,7 @@ struct StepFitSettings {
   double folds = 0;         // share of the points inside that may be folded in the end, in [0, 1]
   // Steps that are proven to fold anywhere are halved too: ProofSettings::cellsPerCharge for that.
   std::optional<double> proofCells;
-  int maxSteps = 16;
+  int maxSteps = FitMapSettings().maxSteps;
   std::size_t maxSources = 100000;  // of one step
   std::uint64_t seed = 1;
 };
@@ -33,8 +34,10 @@ struct StepFit {
 // handed on as it is, not magnified. The last step also brings points back that the others left far
 // from where they should be. A step that folds points inside is halved while there are fewer than
 // maxSteps: where its first charges fold more than a quarter, or the whole fit more than half, of
-// what is left of `folds`; or where cells are proven to fold, if that is asked for. inside: points
-// of the source. Throws DataError, MemoryError, Cancelled.
+// what is left of `folds`; or where cells are proven to fold, if that is asked for. Where
+// intermediate shapes run through themselves the way goes through smoothed ones (shape_smoother.h),
+// at once or when it is lost; where both are lost, one step does the rest of the first. inside:
+// points of the source. Throws DataError, MemoryError, Cancelled.
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings);
 
 }  // namespace innermap

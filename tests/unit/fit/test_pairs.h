@@ -1,6 +1,7 @@
 // Pairs of boundaries with a map inside that is known.
 #pragma once
 
+#include <cmath>
 #include <functional>
 
 #include "innermap/fit/boundary_pair.h"
@@ -28,6 +29,14 @@ inline Mesh twoBalls(double apart) {
                              shapes::icosphere(3, 1, {apart, 0, 0}));
   mesh.name = "two balls";
   return mesh;
+}
+
+// A ball whose skin at one pole is drawn out so far, or in, below 0.
+inline Mesh drawnOut(double by) {
+  return moved(ball(4), [by](const Vec3& p) {
+    const double near = std::exp(-std::pow(std::hypot(p.x, p.y) / 0.3, 4));
+    return Vec3{p.x, p.y, p.z + (p.z > 0 ? by * near : 0)};
+  });
 }
 
 inline constexpr Mat3 kAffine = {{{2, 0.5, 0}, {0, 1, -0.25}, {0.125, 0, 1.5}}};

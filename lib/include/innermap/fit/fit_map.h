@@ -70,7 +70,7 @@ struct FitMapSettings {
   std::optional<ShellSettings> shell;
   Interpolation interpolation = Interpolation::automatic;
   OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
-  int maxSteps = 16;
+  int maxSteps = 48;                        // solids with limbs take 3 to 8, deep dents 20 to 40
   Prove prove = Prove::core;
   // ProofSettings::cellsPerCharge. Of maps in three to five steps this leaves 1 to 3% of the solid
   // undecided, where a hundred leave 0.01%. With oneToOne on, and with Prove::full, as many as

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <mutex>
+#include <set>
+#include <string>
 
 #include "fit/detail/inside_check.h"
 #include "fit/detail/streams.h"
@@ -41,6 +44,19 @@ Move twisted(double angle) {
 StepFit fitted(const BoundaryPair& pair, double tolerance) {
   return fitInSteps(pair, pointsInside(pair.solid(), 2000), {.tolerance = tolerance});
 }
+
+class Stages : public RunContext {
+ public:
+  void report(std::string_view stage, double) override {
+    const std::lock_guard lock(mutex_);
+    seen.emplace(stage);
+  }
+
+  std::set<std::string> seen;
+
+ private:
+  std::mutex mutex_;
+};
 
 // Over the target's diagonal.
 std::vector<double> errorsAt(const StepFit& fit, const BoundaryPair& pair, const Points& points,
@@ -166,6 +182,18 @@ TEST(StepFitRelease, OneStepDoesTheRestOfAWayThatIsLost) {
   ASSERT_LT(lost, fit.steps.size()) << "it was to be lost on the way";
   EXPECT_EQ(fit.steps.size(), lost + 1);
   EXPECT_EQ(fit.steps.back().to, 1);
+}
+
+// In between the limb is a disc that runs through the body, where nothing can be fitted.
+TEST(StepFitRelease, ALimbIsTurnedIntoAPit) {
+  const BoundaryPair pair = makeBoundaryPair(drawnOut(1.5), drawnOut(-1));
+  Stages run;
+  const RunScope scope(run);
+  const StepFit fit =
+      fitInSteps(pair, pointsInside(pair.solid(), 2000), {.tolerance = 1e-2, .folds = 1e-3});
+  EXPECT_EQ(run.seen.count("going by smoothed shapes"), 1);
+  EXPECT_LE(fit.error.p99, 1e-2);
+  EXPECT_LE(fit.steps.back().folded, 5e-3);
 }
 
 // Central differences at two distances: what they are off falls with the square.

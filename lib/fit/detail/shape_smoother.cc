@@ -1,0 +1,101 @@
+#include "fit/detail/shape_smoother.h"
+
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/core/error.h"
+
+namespace innermap {
+namespace {
+
+constexpr double kLeastCotangent = 0.02, kMostCotangent = 50;
+// Of the area, and the part of the way at each end on which s goes from 0 to 1. Between solids with
+// limbs and pits a thousandth leaves crossings; a hundredth shrinks limbs to stubs, which many more
+// steps have to grow again.
+constexpr double kLambda = 0.003, kRamp = 0.25;
+// Beyond this the volume is no measure of a shape's size: it runs through itself.
+constexpr double kMostGrowth = 2;
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+}  // namespace
+
+double edgeWeight(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double area = norm(cross(a - c, b - c));
+  return area > 0 ? std::clamp(dot(a - c, b - c) / area, kLeastCotangent, kMostCotangent)
+                  : kLeastCotangent;
+}
+
+struct ShapeSmoother::Implementation {
+  std::vector<Triangle> triangles;
+  double volume = 0;
+  Eigen::VectorXd masses;
+  Eigen::SimplicialLDLT<Sparse> solver;
+
+  void add(const Points& at, std::vector<Eigen::Triplet<double>>& entries) {
+    double total = 0;
+    const auto areaOf = [&](const Triangle& t) {
+      return norm(cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]])) / 2;
+    };
+    for (const Triangle& t : triangles) total += areaOf(t);
+    if (!(total > 0)) throw DataError("the surface has no area");
+    for (const Triangle& t : triangles)
+      for (int k = 0; k < 3; ++k) {
+        const int i = t[k], j = t[(k + 1) % 3];
+        masses[i] += areaOf(t) / 3 / total / 2;
+        const double w = kLambda * edgeWeight(at[i], at[j], at[t[(k + 2) % 3]]) / 2 / 2;
+        entries.insert(entries.end(), {{i, i, w}, {j, j, w}, {i, j, -w}, {j, i, -w}});
+      }
+  }
+};
+
+ShapeSmoother::ShapeSmoother(const Points& from, const Points& to,
+                             const std::vector<Triangle>& triangles) {
+  auto out = std::make_unique<Implementation>();
+  out->triangles = triangles;
+  out->volume = signedVolume(from, triangles);
+  const auto count = static_cast<int>(from.size());
+  out->masses = Eigen::VectorXd::Zero(count);
+  std::vector<Eigen::Triplet<double>> entries;
+  out->add(from, entries);
+  out->add(to, entries);
+  // Vertices in no triangle stay where they are.
+  for (int v = 0; v < count; ++v) {
+    if (!(out->masses[v] > 0)) out->masses[v] = 1.0 / count;
+    entries.emplace_back(v, v, out->masses[v]);
+  }
+  Sparse matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  out->solver.compute(matrix);
+  if (out->solver.info() != Eigen::Success) throw DataError("the surface is too thin to smooth");
+  implementation_ = std::move(out);
+}
+
+ShapeSmoother::~ShapeSmoother() = default;
+ShapeSmoother::ShapeSmoother(ShapeSmoother&&) noexcept = default;
+
+Points ShapeSmoother::smoothed(const Points& shape, double t) const {
+  const Implementation& d = *implementation_;
+  const double share = std::clamp(std::min(t, 1 - t) / kRamp, 0.0, 1.0);
+  Eigen::MatrixX3d at(static_cast<Eigen::Index>(shape.size()), 3);
+  for (std::size_t v = 0; v < shape.size(); ++v)
+    at.row(static_cast<Eigen::Index>(v)) << shape[v].x, shape[v].y, shape[v].z;
+  const Eigen::MatrixX3d smooth = d.solver.solve(Eigen::MatrixX3d(d.masses.asDiagonal() * at));
+  at += share * (smooth - at);
+  const Eigen::RowVector3d middle = d.masses.transpose() * at / d.masses.sum();
+  const auto points = [&](double growth) {
+    Points out(shape.size());
+    for (std::size_t v = 0; v < out.size(); ++v) {
+      const Eigen::RowVector3d p =
+          middle + growth * (at.row(static_cast<Eigen::Index>(v)) - middle);
+      out[v] = {p[0], p[1], p[2]};
+    }
+    return out;
+  };
+  Points out = points(1);
+  const double growth = std::cbrt(d.volume / signedVolume(out, d.triangles));
+  return growth > 0 && growth <= kMostGrowth ? points(growth) : out;
+}
+
+}  // namespace innermap

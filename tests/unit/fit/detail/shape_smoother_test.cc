@@ -1,0 +1,68 @@
+#include "fit/detail/shape_smoother.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/detail/shape_path.h"
+#include "fit/test_pairs.h"
+#include "innermap/mesh/check.h"
+
+namespace innermap {
+namespace {
+
+double farthest(const Points& a, const Points& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, norm(a[i] - b[i]));
+  return most;
+}
+
+std::size_t crossings(const ShapePath& path, const Mesh& mesh) {
+  std::size_t count = 0;
+  for (const double t : {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875})
+    count += selfIntersections(path.at(t), mesh.triangles).size();
+  return count;
+}
+
+// Half way a limb that is turned inside out is a flat disc, wider than the body: so it runs through
+// the body, unless it has shrunk before.
+TEST(ShapeSmoother, LimbsTurnIntoPitsWithoutCrossings) {
+  const Mesh from = drawnOut(1.5);
+  for (const double pit : {-0.5, -1.6}) {
+    SCOPED_TRACE("a pit of " + std::to_string(pit));
+    const Mesh to = drawnOut(pit);
+    const auto path = [&](Between between) {
+      return ShapePath(from.vertices, to.vertices, from.triangles, 1, between);
+    };
+    EXPECT_GT(crossings(path(Between::interpolated), from), 0);
+    EXPECT_EQ(crossings(path(Between::smoothed), from), 0);
+  }
+}
+
+TEST(ShapeSmoother, BeginsAndEndsWithTheShapes) {
+  const Mesh from = drawnOut(1.5), to = drawnOut(-1);
+  const double growth = std::cbrt(signedVolume(to) / signedVolume(from));
+  const ShapePath path(from.vertices, to.vertices, from.triangles, growth, Between::smoothed);
+  EXPECT_LT(farthest(path.at(1e-6), from.vertices), 1e-4);
+  EXPECT_LT(farthest(path.at(1 - 1e-6), path.at(1)), 1e-4);
+}
+
+TEST(ShapeSmoother, KeepsTheVolume) {
+  const Mesh from = drawnOut(1.5), to = drawnOut(-1);
+  const ShapeSmoother smoother(from.vertices, to.vertices, from.triangles);
+  const Points shape = smoother.smoothed(from.vertices, 0.5);
+  EXPECT_GT(farthest(shape, from.vertices), 0.5);
+  EXPECT_NEAR(signedVolume(shape, from.triangles), signedVolume(from), 1e-9);
+}
+
+TEST(ShapeSmoother, VerticesInNoTriangleStay) {
+  Mesh from = drawnOut(1);
+  from.vertices.push_back({3, 4, 5});
+  const ShapeSmoother smoother(from.vertices, from.vertices, from.triangles);
+  const Points shape = smoother.smoothed(from.vertices, 1e-9);
+  EXPECT_LT(farthest(shape, from.vertices), 1e-6);
+}
+
+}  // namespace
+}  // namespace innermap
