@@ -7,13 +7,20 @@
 namespace innermap {
 namespace {
 
+// 100, not 1e+02.
+std::string written(double value, int digits) {
+  const std::string out = fmt::format("{:.{}g}", value, digits);
+  return std::abs(value) < 1e6 && out.find("e+") != out.npos ? fmt::format("{:.0f}", std::stod(out))
+                                                             : out;
+}
+
 std::string rounded(double bound, int digits, bool up) {
-  const std::string near = fmt::format("{:.{}g}", bound, digits);
+  const std::string near = written(bound, digits);
   if (!(bound > 0) || !std::isfinite(bound)) return near;
   const double shown = std::stod(near);
   if (up ? shown >= bound : shown <= bound) return near;
   const double unit = std::pow(10, std::floor(std::log10(bound)) - digits + 1);
-  return fmt::format("{:.{}g}", shown + (up ? unit : -unit), digits);
+  return written(shown + (up ? unit : -unit), digits);
 }
 
 // The target's surface winds about its inside once, and about nothing else: one closed surface that
