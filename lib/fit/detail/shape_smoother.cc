@@ -60,11 +60,9 @@ ShapeSmoother::ShapeSmoother(const Points& from, const Points& to,
   std::vector<Eigen::Triplet<double>> entries;
   out->add(from, entries);
   out->add(to, entries);
-  // Vertices in no triangle stay where they are.
-  for (int v = 0; v < count; ++v) {
-    if (!(out->masses[v] > 0)) out->masses[v] = 1.0 / count;
-    entries.emplace_back(v, v, out->masses[v]);
-  }
+  // Vertices of no area go with their neighbours, those in no triangle stay where they are.
+  out->masses = out->masses.cwiseMax(1e-9 / count);
+  for (int v = 0; v < count; ++v) entries.emplace_back(v, v, out->masses[v]);
   Sparse matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());
   out->solver.compute(matrix);
