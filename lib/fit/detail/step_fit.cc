@@ -46,6 +46,9 @@ constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 // or up to 0.0004.
 constexpr double kManyCrossings = 0.01, kFewerCrossings = 0.1;
 constexpr int kLooks = 8;
+// Steps that shrinking, turning and growing again take at least; with fewer the usual way is
+// better.
+constexpr int kFewestSmoothed = 12;
 // Of the work until there to the work in all, by the way until there: the nearer to the target, the
 // shorter the steps and the more charges they take.
 constexpr double kWorkPower = 2.4;
@@ -291,19 +294,21 @@ StepFit fitInSteps(const BoundaryPair& pair, const Points& inside,
                    const StepFitSettings& settings) {
   StepFitter fitter(pair, inside, settings, Between::interpolated);
   std::optional<StepFitter> smoothed;
-  const auto goSmoothed = [&] { return !outOfTime() && smoothed->go(); };
-  const double crossing = fitter.mostCrossings();
+  const bool may = settings.maxSteps >= kFewestSmoothed;
+  const double crossing = may ? fitter.mostCrossings() : 0;
   if (crossing > kManyCrossings) {
     smoothed.emplace(pair, inside, settings, Between::smoothed);
     if (smoothed->mostCrossings() > kFewerCrossings * crossing) smoothed.reset();
   }
   const bool first = smoothed.has_value();
-  if (first && goSmoothed()) return smoothed->result();
+  bool arrived = first && smoothed->go();
+  if (arrived && !smoothed->runsThroughItself()) return smoothed->result();
   if (fitter.go()) return fitter.result();
-  if (!first && fitter.runsThroughItself()) {
+  if (may && !first && fitter.runsThroughItself() && !outOfTime()) {
     smoothed.emplace(pair, inside, settings, Between::smoothed);
-    if (goSmoothed()) return smoothed->result();
+    arrived = smoothed->go();
   }
+  if (arrived) return smoothed->result();
   fitter.jump();
   return fitter.result();
 }

@@ -196,6 +196,17 @@ TEST(StepFitRelease, ALimbIsTurnedIntoAPit) {
   EXPECT_LE(fit.steps.back().folded, 5e-3);
 }
 
+// The detour takes a dozen steps at least.
+TEST(StepFitRelease, FewStepsMakeNoDetour) {
+  const BoundaryPair pair = makeBoundaryPair(drawnOut(1.5), drawnOut(-1));
+  Stages run;
+  const RunScope scope(run);
+  const StepFit fit = fitInSteps(pair, pointsInside(pair.solid(), 2000),
+                                 {.tolerance = 1e-2, .folds = 1e-3, .maxSteps = 3});
+  EXPECT_EQ(run.seen.count("going by smoothed shapes"), 0);
+  EXPECT_LE(fit.steps.size(), 3);
+}
+
 // Central differences at two distances: what they are off falls with the square.
 TEST(StepFit, JacobiansAreTheDerivative) {
   const Mesh source = bar();
