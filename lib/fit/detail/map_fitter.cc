@@ -22,6 +22,9 @@ constexpr std::size_t kInside = 20000, kPlaces = 16;
 constexpr double kHopelessFolds = 2 * kManyFolds;
 // Of one map's folds may be left by steps, times as often as their error exceeds the tolerance.
 constexpr double kWorthIt = 0.5;
+// Steps of a map beyond which a proof that nobody asked for in particular looks at fewer cells, by
+// the square: each takes time in proportion to the steps, and less of them is proven.
+constexpr double kManySteps = 8;
 constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 
 // A fit with a number of charges.
@@ -177,8 +180,9 @@ Injectivity MapFitter::injectivityOf(FitOutcome& out) {
 void MapFitter::prove(FitOutcome& out) {
   if (settings_.prove == Prove::off || out.proof) return;
   const bool on = settings_.oneToOne == OneToOne::on;
-  const double cells =
-      on ? std::max(settings_.proofCells, ProofSettings().cellsPerCharge) : settings_.proofCells;
+  const double share = std::min(1.0, kManySteps / static_cast<double>(out.map.steps().size()));
+  const double cells = on ? std::max(settings_.proofCells, ProofSettings().cellsPerCharge)
+                          : std::max(1.0, share * share * settings_.proofCells);
   timed(seconds, "proof",
         [&] { out.proof = tryProof(out.map, pair_, settings_.prove, cells, warnings); });
 }

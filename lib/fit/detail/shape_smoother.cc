@@ -10,9 +10,9 @@ namespace innermap {
 namespace {
 
 constexpr double kLeastCotangent = 0.02, kMostCotangent = 50;
-// Of the area, and the part of the way at each end on which s goes from 0 to 1. Between solids with
-// limbs and pits a thousandth leaves crossings; a hundredth shrinks limbs to stubs, which many more
-// steps have to grow again.
+// Of the area, and the part of the way at each end on which s goes from 0 to 1. A tenth of
+// this lambda leaves crossings between solids with limbs and pits; seven times as much shrinks
+// limbs to stubs, and growing them again takes three times as long.
 constexpr double kLambda = 0.003, kRamp = 0.25;
 // Beyond this the volume is no measure of a shape's size: it runs through itself.
 constexpr double kMostGrowth = 2;

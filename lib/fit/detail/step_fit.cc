@@ -41,9 +41,9 @@ constexpr double kLeap = 4, kLost = 8;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 // The way goes through smoothed shapes at once where one of the others has more crossings a
-// triangle than that, and each of the smoothed ones at most so many times as many. Limbs that turn
-// into pits have 0.01 to 0.6, and smoothed mostly none; solids whose usual way is good have none,
-// or up to 0.0004.
+// triangle than that, and each of the smoothed ones at most so many times as many. Limbs that
+// turned into pits had 0.015 and more, and smoothed mostly none; between whole models there were
+// none, or up to 0.0004.
 constexpr double kManyCrossings = 0.01, kFewerCrossings = 0.1;
 constexpr int kLooks = 8;
 // Steps that shrinking, turning and growing again take at least; with fewer the usual way is

@@ -11,14 +11,8 @@ namespace innermap::proof {
 // Of the boundary: what takes more than cells do.
 constexpr std::uint64_t kBytesPerPiece = 400;
 
-// Steps of a map from which on cells are fewer, by the square: each takes time in proportion to the
-// steps, and as what is known of it spreads with each step, less of them is proven. Of a map in 44
-// steps eight cells a charge proved 46% of the solid in 37 s, eight steps' share of them nothing.
-constexpr double kManySteps = 8;
-
 inline std::uint64_t cellLimit(const ComposedMap& map, const ProofSettings& settings) {
-  const double share = std::min(1.0, kManySteps / static_cast<double>(map.steps().size()));
-  const double cells = share * share * settings.cellsPerCharge * static_cast<double>(map.sources());
+  const double cells = settings.cellsPerCharge * static_cast<double>(map.sources());
   return std::max(settings.leastCells, static_cast<std::uint64_t>(std::min(cells, 1e12)));
 }
 

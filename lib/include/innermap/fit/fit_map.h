@@ -70,11 +70,12 @@ struct FitMapSettings {
   std::optional<ShellSettings> shell;
   Interpolation interpolation = Interpolation::automatic;
   OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
-  int maxSteps = 48;                        // solids with limbs take 3 to 8, deep dents 20 to 40
+  int maxSteps = 48;
   Prove prove = Prove::core;
   // ProofSettings::cellsPerCharge. Of maps in three to five steps this leaves 1 to 3% of the solid
-  // undecided, where a hundred leave 0.01%. With oneToOne on, and with Prove::full, as many as
-  // ProofSettings has at least.
+  // undecided, where a hundred leave 0.01%. Of maps in more than eight steps there are fewer, by
+  // the square of the steps over eight, but one at least. With oneToOne on, and with Prove::full,
+  // as many as ProofSettings has at least.
   double proofCells = kProofCells;
   std::uint64_t seed = 1;
 };

@@ -55,9 +55,8 @@ class ExpandedMap {
 
 struct ProofSettings {
   // Cells, or pieces of the boundary (of maps in steps twice as many), that are looked at before
-  // the rest stays undecided: a count in proportion to the map's charges (fewer by the square of
-  // its steps over eight where it has more), never a clock, so that results do not depend on the
-  // machine's speed. From 1 to 1e6.
+  // the rest stays undecided: a count in proportion to the map's charges, never a clock, so that
+  // results do not depend on the machine's speed. From 1 to 1e6.
   double cellsPerCharge = 100;
   std::uint64_t leastCells = 50'000;  // that many in any case
   // How near the proven boundary error comes to the largest one that is seen, relative to that;

@@ -193,7 +193,7 @@ TEST(StepFitRelease, ALimbIsTurnedIntoAPit) {
       fitInSteps(pair, pointsInside(pair.solid(), 2000), {.tolerance = 1e-2, .folds = 1e-3});
   EXPECT_EQ(run.seen.count("going by smoothed shapes"), 1);
   EXPECT_LE(fit.error.p99, 1e-2);
-  EXPECT_LE(fit.steps.back().folded, 5e-3);
+  EXPECT_LE(fit.steps.back().folded, 1e-3);
 }
 
 // The detour takes a dozen steps at least.
