@@ -20,18 +20,6 @@ using Eigen::Vector3d;
 // connects where they belong, and is too small to bend anything.
 constexpr double kStraight = 1e-6;
 
-Vector3d vector(const Vec3& p) { return {p.x, p.y, p.z}; }
-Vec3 point(const Vector3d& v) { return {v[0], v[1], v[2]}; }
-
-// The rotation nearest to m (Kabsch, 1976), or the rotation with a reflection: sign of its
-// determinant.
-Matrix3d rotationOf(const Matrix3d& m, int sign = 1) {
-  const Eigen::JacobiSVD<Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3d flip = Matrix3d::Identity();
-  flip(2, 2) = sign * (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return svd.matrixU() * flip * svd.matrixV().transpose();
-}
-
 // Columns: two edges and the normal, as long as the root of the area.
 Matrix3d frameOf(const Points& at, const Triangle& t) {
   const Vec3 a = at[t[1]] - at[t[0]], b = at[t[2]] - at[t[0]], n = cross(a, b);
@@ -91,46 +79,6 @@ std::vector<Deformation> deformationsOf(const Points& from, const Points& to,
     out[t].turn = turns[t];
     out[t].stretch = turnedBy(turns[t]).transpose() * gradients[t];
   }
-  return out;
-}
-
-// What lays `to` on `from` best by least squares over the vertices, weighted by area, when scaled
-// by 1 / growth. As the way back, from there to `to`.
-ScaledMotion alignment(const Points& from, const Points& to, const std::vector<Triangle>& triangles,
-                       double growth) {
-  std::vector<double> weight(from.size(), 0);
-  for (const Triangle& t : triangles)
-    for (const int v : t)
-      weight[v] += norm(cross(from[t[1]] - from[t[0]], from[t[2]] - from[t[0]]));
-  double sum = 0;
-  Vector3d a = Vector3d::Zero(), b = a;
-  for (std::size_t v = 0; v < from.size(); ++v) {
-    sum += weight[v];
-    a += weight[v] * vector(from[v]);
-    b += weight[v] * vector(to[v]);
-  }
-  if (!(sum > 0)) throw DataError("the surface has no area");
-  a /= sum;
-  b /= sum;
-  Matrix3d covariance = Matrix3d::Zero();
-  for (std::size_t v = 0; v < from.size(); ++v)
-    covariance += weight[v] * (vector(to[v]) - b) * (vector(from[v]) - a).transpose();
-  const bool mirrored = signedVolume(from, triangles) * signedVolume(to, triangles) < 0;
-  const Matrix3d r = rotationOf(covariance, mirrored ? -1 : 1);
-  ScaledMotion out;
-  out.scale = growth;
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) out.rotation[i][k] = r(i, k);
-  out.translation = point(b - growth * (r * a));
-  return out;
-}
-
-Points movedBack(const ScaledMotion& motion, const Points& points) {
-  const Mat3 back = transposed(motion.rotation);
-  Points out;
-  out.reserve(points.size());
-  for (const Vec3& p : points)
-    out.push_back((1 / motion.scale) * (back * (p - motion.translation)));
   return out;
 }
 
@@ -206,24 +154,6 @@ Points ShapePath::at(double t) const {
   for (std::size_t v = 0; v < out.size(); ++v)
     out[v] = point(solved.row(static_cast<Eigen::Index>(v)).transpose());
   return d.smoother ? d.smoother->smoothed(out, t) : out;
-}
-
-HarmonicField movedBy(const ScaledMotion& motion, const HarmonicField& field) {
-  const auto turned = [&](const Matrix& rows, std::size_t r) {
-    return motion.scale * (motion.rotation * Vec3{rows(r, 0), rows(r, 1), rows(r, 2)});
-  };
-  const auto turnAll = [&](const Matrix& rows) {
-    Matrix out(rows.rows(), 3);
-    for (std::size_t r = 0; r < rows.rows(); ++r) {
-      const Vec3 row = turned(rows, r);
-      for (int k = 0; k < 3; ++k) out(r, static_cast<std::size_t>(k)) = row[k];
-    }
-    return out;
-  };
-  Affine affine{field.affine().center, turnAll(field.affine().coefficients)};
-  for (int k = 0; k < 3; ++k)
-    affine.coefficients(0, static_cast<std::size_t>(k)) += motion.translation[k];
-  return HarmonicField(field.sources(), turnAll(field.weights()), std::move(affine));
 }
 
 }  // namespace innermap

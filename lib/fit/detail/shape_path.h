@@ -11,20 +11,10 @@
 #include <memory>
 #include <vector>
 
-#include "innermap/field/harmonic_field.h"
+#include "fit/detail/scaled_motion.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
-
-// p -> scale rotation p + translation. The rotation has a reflection in it where a path leads to a
-// mirror's image.
-struct ScaledMotion {
-  double scale = 1;
-  Mat3 rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  Vec3 translation;
-
-  Vec3 operator()(const Vec3& p) const { return scale * (rotation * p) + translation; }
-};
 
 // smoothed: see shape_smoother.h. A longer way, which runs through itself where the other does only
 // if limbs or pits lie quite differently.
@@ -49,8 +39,5 @@ class ShapePath {
   struct Implementation;
   std::unique_ptr<const Implementation> implementation_;
 };
-
-// The field p -> motion(field(p)). Three channels.
-HarmonicField movedBy(const ScaledMotion& motion, const HarmonicField& field);
 
 }  // namespace innermap

@@ -3,21 +3,58 @@
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "core/pi.h"
+#include "fit/detail/scaled_motion.h"
 #include "innermap/core/error.h"
+#include "innermap/surface/correspond.h"
 
 namespace innermap {
 namespace {
 
 constexpr double kLeastCotangent = 0.02, kMostCotangent = 50;
-// Of the area, and the part of the way at each end on which s goes from 0 to 1. A tenth of
-// this lambda leaves crossings between solids with limbs and pits; seven times as much shrinks
-// limbs to stubs, and growing them again takes three times as long.
+// Of the area, and the part of the way at each end on which s goes from 0 to 1.
 constexpr double kLambda = 0.003, kRamp = 0.25;
 // Beyond this the volume is no measure of a shape's size: it runs through itself.
 constexpr double kMostGrowth = 2;
 
 using Sparse = Eigen::SparseMatrix<double>;
+
+Eigen::MatrixX3d matrixOf(const Points& points) {
+  Eigen::MatrixX3d out(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t v = 0; v < points.size(); ++v)
+    out.row(static_cast<Eigen::Index>(v)) = vector(points[v]).transpose();
+  return out;
+}
+
+// The surface as a ball that lies as the two do on average, as large as `from`. Empty where it is
+// not one closed surface without handles. Vertices in no triangle stay half way.
+std::optional<Eigen::MatrixX3d> ballOf(const Points& from, const Points& to,
+                                       const std::vector<Triangle>& triangles) {
+  Mesh mesh;
+  mesh.vertices = from;
+  mesh.triangles = triangles;
+  Points middle(from.size()), sphere(from.size());
+  for (std::size_t v = 0; v < from.size(); ++v) middle[v] = 0.5 * (from[v] + to[v]);
+  std::vector<ShellVertex> on;
+  try {
+    const EmbeddedSurface laidOut(mesh);
+    const SurfaceShells& surfaces = laidOut.surfaces();
+    if (surfaces.shells.size() != 1 || surfaces.shells.front().genus != 0) return {};
+    on = surfaces.shellVertex;
+    for (std::size_t v = 0; v < sphere.size(); ++v)
+      if (on[v].vertex >= 0)
+        sphere[v] = laidOut.layout(0).place[static_cast<std::size_t>(on[v].vertex)];
+  } catch (const DataError&) {
+    return {};
+  }
+  const double radius = std::cbrt(std::abs(signedVolume(from, triangles)) / (4 * kPi / 3));
+  Points ball = movedBack(alignment(middle, sphere, triangles, 1 / radius), sphere);
+  for (std::size_t v = 0; v < ball.size(); ++v)
+    if (on[v].vertex < 0) ball[v] = middle[v];
+  return matrixOf(ball);
+}
 
 }  // namespace
 
@@ -31,6 +68,7 @@ struct ShapeSmoother::Implementation {
   std::vector<Triangle> triangles;
   double volume = 0;
   Eigen::VectorXd masses;
+  std::optional<Eigen::MatrixX3d> ball;
   Eigen::SimplicialLDLT<Sparse> solver;
 
   void add(const Points& at, std::vector<Eigen::Triplet<double>>& entries) {
@@ -55,6 +93,7 @@ ShapeSmoother::ShapeSmoother(const Points& from, const Points& to,
   auto out = std::make_unique<Implementation>();
   out->triangles = triangles;
   out->volume = signedVolume(from, triangles);
+  out->ball = ballOf(from, to, triangles);
   const auto count = static_cast<int>(from.size());
   out->masses = Eigen::VectorXd::Zero(count);
   std::vector<Eigen::Triplet<double>> entries;
@@ -75,12 +114,11 @@ ShapeSmoother::ShapeSmoother(ShapeSmoother&&) noexcept = default;
 
 Points ShapeSmoother::smoothed(const Points& shape, double t) const {
   const Implementation& d = *implementation_;
-  const double share = std::clamp(std::min(t, 1 - t) / kRamp, 0.0, 1.0);
-  Eigen::MatrixX3d at(static_cast<Eigen::Index>(shape.size()), 3);
-  for (std::size_t v = 0; v < shape.size(); ++v)
-    at.row(static_cast<Eigen::Index>(v)) << shape[v].x, shape[v].y, shape[v].z;
+  const double way = std::clamp(std::min(t, 1 - t), 0.0, 0.5);  // from the nearer end
+  Eigen::MatrixX3d at = matrixOf(shape);
   const Eigen::MatrixX3d smooth = d.solver.solve(Eigen::MatrixX3d(d.masses.asDiagonal() * at));
-  at += share * (smooth - at);
+  at += std::min(way / kRamp, 1.0) * (smooth - at);
+  if (d.ball) at += 2 * way * (*d.ball - at);
   const Eigen::RowVector3d middle = d.masses.transpose() * at / d.masses.sum();
   const auto points = [&](double growth) {
     Points out(shape.size());

@@ -38,6 +38,9 @@ constexpr double kKept = 0.375, kMended = 1.25;
 // times what they may. Where an intermediate shape runs through itself a step leaves five to thirty
 // times as much, and so do those after it.
 constexpr double kLeap = 4, kLost = 8;
+// Steps in a row that did not fold before longer ones are tried again.
+constexpr int kStepsInRow = 4;
+constexpr double kLengthSlack = 1.01;  // for rounding
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 // The way goes through smoothed shapes at once where one of the others has more crossings a
@@ -58,6 +61,8 @@ constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // proportion at a smaller one. Steps that can be met take 4,000 to 13,000; jumps across slits take
 // all there are.
 constexpr double kStepSources = 15000;
+// Times that, where a step through smoothed shapes leaps: out of needle-like pits.
+constexpr double kMoreSources = 2;
 // Of the target's diagonal: sums, and where points inside go (a share of the tolerance where that
 // is less); the mesh about an intermediate shape.
 constexpr double kSumShare = 2e-3;
@@ -92,27 +97,32 @@ class StepFitter {
   // False once the way is lost, where its end is not reached.
   bool go() {
     std::vector<double> ends{1};  // the next one last
-    if (settings_.maxSteps > 1) ends.push_back(0.5);
-    bool hurries = false;  // one step does the rest of the way, for lack of time
-    double seconds = 0;    // of the last step, taken or not
+    bool hurries = false;         // one step does the rest of the way, for lack of time
+    double seconds = 0;           // of the last step, taken or not
     while (!ends.empty()) {
       reportGoing();
       if (!hurries && outOfTime(seconds)) {
         hurries = true;
         ends = {1};
       }
+      const auto mayHalve = [&] {
+        return !hurries && static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
+      };
+      while (mayHalve() && ends.back() - at_ > longest_) ends.push_back((at_ + ends.back()) / 2);
       const double end = ends.back();
-      const bool may =
-          !hurries && static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
+      const bool may = mayHalve();
       const double half = (end - at_) / 2;
       const auto began = std::chrono::steady_clock::now();
       Step step = fitStep(end, may);
+      if (smoothed_ && leaps(step)) step = fitStep(end, may, kMoreSources);
       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
       if (step.fit.end == AdaptiveEnd::stopped ||
           (may && half >= shortest(kShortestFitted) && foldsTooMuch(step))) {
-        ends.push_back((at_ + end) / 2);
+        longest_ = kLengthSlack * half;
+        inRow_ = 0;
         continue;
       }
+      if (++inRow_ % kStepsInRow == 0) longest_ *= 2;
       ends.pop_back();
       take(std::move(step), ends.empty());
       if (isLost() && !ends.empty()) return false;
@@ -177,14 +187,15 @@ class StepFitter {
     return std::max(share * settings_.tolerance, kSmallestTolerance);
   }
 
-  std::size_t mostSources() const {
-    const double most = kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
+  std::size_t mostSources(double times) const {
+    const double most =
+        times * kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
     return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
   }
 
   // mayHalve: stops where a round folds too many points that are not folded yet. Folds of the first
   // level of charges are few or none where those of the whole fit are none.
-  Step fitStep(double to, bool mayHalve) {
+  Step fitStep(double to, bool mayHalve, double timesSources = 1) {
     const bool last = !(to < 1);
     const Points now = path_.at(at_);
     Points ways = path_.at(to);
@@ -196,7 +207,7 @@ class StepFitter {
     }
     AdaptiveSettings s;
     s.tolerance = toleranceUntil(to);
-    s.maxSources = mostSources();
+    s.maxSources = mostSources(timesSources);
     s.outlierRounds = last ? kOutlierRounds : 0;
     s.patience = last ? kLastPatience : kPatience;
     const double half = (to - at_) / 2;
@@ -260,10 +271,15 @@ class StepFitter {
     return missed_ > kLost * settings_.tolerance || leapt_ || folded_ > kManyFolds;
   }
 
+  // Whether a step leaves much more than it may, though it had the charges.
+  bool leaps(const Step& step) const {
+    return step.fit.end == AdaptiveEnd::noGain &&
+           step.fit.error.p99 > kLeap * toleranceUntil(step.record.to);
+  }
+
   void take(Step step, bool last) {
     missed_ += step.fit.error.p99;
-    leapt_ = step.fit.end == AdaptiveEnd::noGain &&
-             step.fit.error.p99 > kLeap * toleranceUntil(step.record.to);
+    leapt_ = leaps(step);
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
     folded_ = step.record.folded;
@@ -284,7 +300,10 @@ class StepFitter {
   double at_ = 0;       // of the way
   double folded_ = 0;   // share of the points inside, so far
   double missed_ = 0;   // the steps' errors, added up
-  bool leapt_ = false;  // the last step left much more than it may, though it had the charges
+  bool leapt_ = false;  // the last step did
+  // That a step may be: half the way, or half of what folded last, doubled in time.
+  double longest_ = kLengthSlack / 2;
+  int inRow_ = 0;  // steps since then
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "fit/detail/shape_path.h"
 #include "fit/test_pairs.h"
@@ -54,6 +56,45 @@ TEST(ShapeSmoother, KeepsTheVolume) {
   const Points shape = smoother.smoothed(from.vertices, 0.5);
   EXPECT_GT(farthest(shape, from.vertices), 0.25);
   EXPECT_NEAR(signedVolume(shape, from.triangles), signedVolume(from), 1e-9);
+}
+
+// Least and most distance from the middle of its volume.
+std::pair<double, double> distances(const Points& points, const std::vector<Triangle>& triangles) {
+  Vec3 middle;
+  double volume = 0;
+  for (const Triangle& t : triangles) {
+    const Vec3 a = points[t[0]], b = points[t[1]], c = points[t[2]];
+    const double cone = dot(a, cross(b, c));
+    volume += cone;
+    middle = middle + cone * (a + b + c) / 4;
+  }
+  middle = middle / volume;
+  std::pair<double, double> out{std::numeric_limits<double>::infinity(), 0};
+  for (const Vec3& p : points) {
+    out.first = std::min(out.first, norm(p - middle));
+    out.second = std::max(out.second, norm(p - middle));
+  }
+  return out;
+}
+
+TEST(ShapeSmoother, HalfWayASurfaceWithoutHandlesIsABall) {
+  const Mesh from = drawnOut(1.5), to = drawnOut(-1);
+  const ShapeSmoother smoother(from.vertices, to.vertices, from.triangles);
+  for (const Points& shape : {from.vertices, to.vertices}) {
+    const Points half = smoother.smoothed(shape, 0.5);
+    EXPECT_EQ(selfIntersections(half, from.triangles).size(), 0);
+    const auto [least, most] = distances(half, from.triangles);
+    EXPECT_LT(most, 1.02 * least);  // the polyhedron's middle is not the sphere's
+  }
+}
+
+TEST(ShapeSmoother, ASurfaceWithAHandleKeepsIt) {
+  const Mesh torus = shapes::torus(48, 24);
+  const ShapeSmoother smoother(torus.vertices, torus.vertices, torus.triangles);
+  const Points half = smoother.smoothed(torus.vertices, 0.5);
+  const auto [least, most] = distances(half, torus.triangles);
+  EXPECT_GT(most, 1.2 * least);
+  EXPECT_NEAR(signedVolume(half, torus.triangles), signedVolume(torus), 1e-9);
 }
 
 // One in no triangle stays, one whose triangles have no area goes with its neighbours.

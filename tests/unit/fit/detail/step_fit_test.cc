@@ -169,19 +169,33 @@ TEST(StepFitRelease, InsideErrorsAreBelowTheCertificates) {
 }
 
 // So few charges cannot follow a bar that is wrung: once the errors add up to eight times the
-// tolerance, one step does the rest of the way.
+// tolerance, one step does the rest of the way, where too few are allowed for a detour.
 TEST(StepFitRelease, OneStepDoesTheRestOfAWayThatIsLost) {
   constexpr double kTolerance = 3e-4;
   const Mesh source = bar();
   const BoundaryPair pair = makeBoundaryPair(source, moved(source, twisted(12)));
-  const StepFit fit = fitInSteps(pair, pointsInside(pair.solid(), 2000),
-                                 {.tolerance = kTolerance, .folds = 4e-4, .maxSources = 1000});
+  const StepFit fit =
+      fitInSteps(pair, pointsInside(pair.solid(), 2000),
+                 {.tolerance = kTolerance, .folds = 4e-4, .maxSteps = 11, .maxSources = 1000});
   double missed = 0;
   std::size_t lost = 0;
   while (lost < fit.steps.size() && missed <= 8 * kTolerance) missed += fit.steps[lost++].error;
   ASSERT_LT(lost, fit.steps.size()) << "it was to be lost on the way";
   EXPECT_EQ(fit.steps.size(), lost + 1);
   EXPECT_EQ(fit.steps.back().to, 1);
+}
+
+// Two turns of a bar, which the usual way follows in vain, are undone on a ball.
+TEST(StepFitRelease, AWrungBarGoesThroughABall) {
+  const Mesh source = bar();
+  const BoundaryPair pair = makeBoundaryPair(source, moved(source, twisted(12)));
+  const Points inside = pointsInside(pair.solid(), 2000);
+  const StepFit fit =
+      fitInSteps(pair, inside, {.tolerance = 2e-3, .folds = 4e-4, .maxSources = 10000});
+  EXPECT_EQ(fit.end, AdaptiveEnd::met);
+  EXPECT_LT(fit.error.p99, 2e-3);
+  EXPECT_LE(fit.steps.size(), 4);
+  EXPECT_EQ(fit.steps.back().folded, 0);
 }
 
 // In between the limb is a disc that runs through the body, where nothing can be fitted.
