@@ -46,10 +46,11 @@ std::string foldAdvice(const MappedSolid& mapped, MapOrigin origin, const FitMap
   if (!fitFacts(mapped.facts).tolerance)
     return "--one-to-one on with --tolerance, in place of a number of charges";
   const bool allSteps = static_cast<int>(mapped.map.steps().size()) >= fitted.maxSteps;
+  const bool tried =
+      fitted.oneToOne == OneToOne::on || (allSteps && fitted.oneToOne == OneToOne::automatic);
   const std::string first =
-      allSteps || fitted.oneToOne == OneToOne::on
-          ? fmt::format("more --max-steps than {}, a smaller --tolerance", fitted.maxSteps)
-          : "--one-to-one on, a smaller --tolerance";
+      tried ? fmt::format("more --max-steps than {}, a smaller --tolerance", fitted.maxSteps)
+            : "--one-to-one on, a smaller --tolerance";
   return origin == MapOrigin::laidOn ? first + laid : first;
 }
 

@@ -16,8 +16,8 @@
 
 namespace innermap {
 
-// smoothed: see shape_smoother.h. A longer way, which runs through itself where the other does only
-// if limbs or pits lie quite differently.
+// smoothed: see shape_smoother.h. A longer way, which without handles hardly ever runs through
+// itself.
 enum class Between { interpolated, smoothed };
 
 class ShapePath {

@@ -19,8 +19,8 @@ namespace innermap {
 namespace {
 
 // Of the way: halves that are made where a coarse fit folds, and where only the full one does,
-// whose folds beside the surface smaller steps cure more seldom. Through smoothed shapes a limb
-// turns into a pit on a small part of the way.
+// whose folds beside the surface smaller steps cure more seldom. The way through smoothed shapes is
+// about four times as long.
 constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32, kOfSmoothed = 0.25;
 // Of the tolerance: what a step before the last may leave, times its part of the way, and at least,
 // through smoothed shapes; what the last one may leave. Where one step's errors are large the

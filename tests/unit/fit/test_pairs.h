@@ -31,11 +31,18 @@ inline Mesh twoBalls(double apart) {
   return mesh;
 }
 
+struct Limb {
+  double width = 0.3;
+  double head = 0;  // by how much its end is wider than its neck, as a share of it
+};
+
 // A ball whose skin at one pole is drawn out so far, or in, below 0.
-inline Mesh drawnOut(double by) {
-  return moved(ball(4), [by](const Vec3& p) {
-    const double near = std::exp(-std::pow(std::hypot(p.x, p.y) / 0.3, 4));
-    return Vec3{p.x, p.y, p.z + (p.z > 0 ? by * near : 0)};
+inline Mesh drawnOut(double by, const Limb& limb = {}) {
+  return moved(ball(4), [&](const Vec3& p) {
+    if (p.z <= 0) return p;
+    const double near = std::exp(-std::pow(std::hypot(p.x, p.y) / limb.width, 4));
+    const double wider = 1 + limb.head * near * near;
+    return Vec3{wider * p.x, wider * p.y, p.z + by * near};
   });
 }
 

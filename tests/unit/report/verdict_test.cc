@@ -73,12 +73,13 @@ TEST(Verdict, WhereAllStepsWereTakenMoreAreAdvised) {
   mapped.injectivity.inside.folded = 500;
   const HarmonicMap step = mapped.map.steps().front();
   mapped.map = ComposedMap(std::vector<HarmonicMap>(4, step));
-  const auto advice = [&](int maxSteps) {
-    const FitMapSettings fitted{.maxSteps = maxSteps};
+  const auto advice = [&](int maxSteps, OneToOne oneToOne = OneToOne::automatic) {
+    const FitMapSettings fitted{.oneToOne = oneToOne, .maxSteps = maxSteps};
     return findingOf(judgeMap(mapped, nullptr, {}, MapOrigin::laidOn, fitted), "folds").advice;
   };
   EXPECT_NE(advice(4).find("more --max-steps than 4"), std::string::npos) << advice(4);
   EXPECT_EQ(advice(5).find("--max-steps"), std::string::npos) << advice(5);
+  EXPECT_EQ(advice(4, OneToOne::off).find("--max-steps"), std::string::npos);
 }
 
 // The fit has told of a tolerance that it missed; a map from a file has not.

@@ -28,18 +28,20 @@ std::size_t crossings(const ShapePath& path, const Mesh& mesh) {
 }
 
 // Half way a limb that is turned inside out is a flat disc, wider than the body: so it runs through
-// the body, unless it has shrunk before.
+// the body, unless it has shrunk before, and through itself where its end is wide and has no room.
 TEST(ShapeSmoother, LimbsTurnIntoPitsWithoutCrossings) {
-  const Mesh from = drawnOut(1.5);
-  for (const double pit : {-0.5, -1.6}) {
-    SCOPED_TRACE("a pit of " + std::to_string(pit));
-    const Mesh to = drawnOut(pit);
-    const auto path = [&](Between between) {
-      return ShapePath(from.vertices, to.vertices, from.triangles, 1, between);
-    };
-    EXPECT_GT(crossings(path(Between::interpolated), from), 0);
-    EXPECT_EQ(crossings(path(Between::smoothed), from), 0);
-  }
+  const Limb stub{0.3, 0}, thin{0.2, 0}, headed{0.2, 0.8}, mushroom{0.2, 1.5};
+  for (const Limb& limb : {stub, thin, headed, mushroom})
+    for (const double pit : {-1.0, -1.6}) {
+      SCOPED_TRACE(testing::Message()
+                   << "a pit of " << pit << ", " << limb.width << " wide, its head " << limb.head);
+      const Mesh from = drawnOut(1.5, limb), to = drawnOut(pit, limb);
+      const auto path = [&](Between between) {
+        return ShapePath(from.vertices, to.vertices, from.triangles, 1, between);
+      };
+      EXPECT_GT(crossings(path(Between::interpolated), from), 0);
+      EXPECT_EQ(crossings(path(Between::smoothed), from), 0);
+    }
 }
 
 TEST(ShapeSmoother, BeginsAndEndsWithTheShapes) {

@@ -185,19 +185,6 @@ TEST(StepFitRelease, OneStepDoesTheRestOfAWayThatIsLost) {
   EXPECT_EQ(fit.steps.back().to, 1);
 }
 
-// Two turns of a bar, which the usual way follows in vain, are undone on a ball.
-TEST(StepFitRelease, AWrungBarGoesThroughABall) {
-  const Mesh source = bar();
-  const BoundaryPair pair = makeBoundaryPair(source, moved(source, twisted(12)));
-  const Points inside = pointsInside(pair.solid(), 2000);
-  const StepFit fit =
-      fitInSteps(pair, inside, {.tolerance = 2e-3, .folds = 4e-4, .maxSources = 10000});
-  EXPECT_EQ(fit.end, AdaptiveEnd::met);
-  EXPECT_LT(fit.error.p99, 2e-3);
-  EXPECT_LE(fit.steps.size(), 4);
-  EXPECT_EQ(fit.steps.back().folded, 0);
-}
-
 // In between the limb is a disc that runs through the body, where nothing can be fitted.
 TEST(StepFitRelease, ALimbIsTurnedIntoAPit) {
   const BoundaryPair pair = makeBoundaryPair(drawnOut(1.5), drawnOut(-1));
