@@ -33,29 +33,26 @@ Eigen::MatrixX3d matrixOf(const Points& points) {
 // The surface as a ball that lies as the two do on average, as large as `from`. Empty where it is
 // not one closed surface without handles. Vertices in no triangle stay half way.
 std::optional<Eigen::MatrixX3d> ballOf(const Points& from, const Points& to,
-                                       const std::vector<Triangle>& triangles) {
+                                       const std::vector<Triangle>& triangles) try {
   Mesh mesh;
   mesh.vertices = from;
   mesh.triangles = triangles;
+  const EmbeddedSurface laidOut(mesh);
+  const SurfaceShells& surfaces = laidOut.surfaces();
+  if (surfaces.shells.size() != 1 || surfaces.shells.front().genus != 0) return {};
   Points middle(from.size()), sphere(from.size());
-  for (std::size_t v = 0; v < from.size(); ++v) middle[v] = 0.5 * (from[v] + to[v]);
-  std::vector<ShellVertex> on;
-  try {
-    const EmbeddedSurface laidOut(mesh);
-    const SurfaceShells& surfaces = laidOut.surfaces();
-    if (surfaces.shells.size() != 1 || surfaces.shells.front().genus != 0) return {};
-    on = surfaces.shellVertex;
-    for (std::size_t v = 0; v < sphere.size(); ++v)
-      if (on[v].vertex >= 0)
-        sphere[v] = laidOut.layout(0).place[static_cast<std::size_t>(on[v].vertex)];
-  } catch (const DataError&) {
-    return {};
+  for (std::size_t v = 0; v < from.size(); ++v) {
+    middle[v] = 0.5 * (from[v] + to[v]);
+    if (const int i = surfaces.shellVertex[v].vertex; i >= 0)
+      sphere[v] = laidOut.layout(0).place[static_cast<std::size_t>(i)];
   }
   const double radius = std::cbrt(std::abs(signedVolume(from, triangles)) / (4 * kPi / 3));
   Points ball = movedBack(alignment(middle, sphere, triangles, 1 / radius), sphere);
   for (std::size_t v = 0; v < ball.size(); ++v)
-    if (on[v].vertex < 0) ball[v] = middle[v];
+    if (surfaces.shellVertex[v].vertex < 0) ball[v] = middle[v];
   return matrixOf(ball);
+} catch (const DataError&) {
+  return {};
 }
 
 }  // namespace

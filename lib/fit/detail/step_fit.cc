@@ -38,7 +38,7 @@ constexpr double kKept = 0.375, kMended = 1.25;
 // times what they may. Where an intermediate shape runs through itself a step leaves five to thirty
 // times as much, and so do those after it.
 constexpr double kLeap = 4, kLost = 8;
-// Steps in a row that did not fold before longer ones are tried again.
+// Steps in a row through smoothed shapes that did not fold before longer ones are tried again.
 constexpr int kStepsInRow = 4;
 constexpr double kLengthSlack = 1.01;  // for rounding
 // Of the folds that are left: after a step, and after its first charges.
@@ -61,8 +61,6 @@ constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // proportion at a smaller one. Steps that can be met take 4,000 to 13,000; jumps across slits take
 // all there are.
 constexpr double kStepSources = 15000;
-// Times that, where a step through smoothed shapes leaps: out of needle-like pits.
-constexpr double kMoreSources = 2;
 // Of the target's diagonal: sums, and where points inside go (a share of the tolerance where that
 // is less); the mesh about an intermediate shape.
 constexpr double kSumShare = 2e-3;
@@ -97,8 +95,9 @@ class StepFitter {
   // False once the way is lost, where its end is not reached.
   bool go() {
     std::vector<double> ends{1};  // the next one last
-    bool hurries = false;         // one step does the rest of the way, for lack of time
-    double seconds = 0;           // of the last step, taken or not
+    if (settings_.maxSteps > 1) ends.push_back(0.5);
+    bool hurries = false;  // one step does the rest of the way, for lack of time
+    double seconds = 0;    // of the last step, taken or not
     while (!ends.empty()) {
       reportGoing();
       if (!hurries && outOfTime(seconds)) {
@@ -114,11 +113,11 @@ class StepFitter {
       const double half = (end - at_) / 2;
       const auto began = std::chrono::steady_clock::now();
       Step step = fitStep(end, may);
-      if (smoothed_ && leaps(step)) step = fitStep(end, may, kMoreSources);
       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
       if (step.fit.end == AdaptiveEnd::stopped ||
           (may && half >= shortest(kShortestFitted) && foldsTooMuch(step))) {
-        longest_ = kLengthSlack * half;
+        ends.push_back((at_ + end) / 2);
+        if (smoothed_) longest_ = kLengthSlack * half;
         inRow_ = 0;
         continue;
       }
@@ -187,15 +186,14 @@ class StepFitter {
     return std::max(share * settings_.tolerance, kSmallestTolerance);
   }
 
-  std::size_t mostSources(double times) const {
-    const double most =
-        times * kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
+  std::size_t mostSources() const {
+    const double most = kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
     return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
   }
 
   // mayHalve: stops where a round folds too many points that are not folded yet. Folds of the first
   // level of charges are few or none where those of the whole fit are none.
-  Step fitStep(double to, bool mayHalve, double timesSources = 1) {
+  Step fitStep(double to, bool mayHalve) {
     const bool last = !(to < 1);
     const Points now = path_.at(at_);
     Points ways = path_.at(to);
@@ -207,7 +205,7 @@ class StepFitter {
     }
     AdaptiveSettings s;
     s.tolerance = toleranceUntil(to);
-    s.maxSources = mostSources(timesSources);
+    s.maxSources = mostSources();
     s.outlierRounds = last ? kOutlierRounds : 0;
     s.patience = last ? kLastPatience : kPatience;
     const double half = (to - at_) / 2;
@@ -271,15 +269,10 @@ class StepFitter {
     return missed_ > kLost * settings_.tolerance || leapt_ || folded_ > kManyFolds;
   }
 
-  // Whether a step leaves much more than it may, though it had the charges.
-  bool leaps(const Step& step) const {
-    return step.fit.end == AdaptiveEnd::noGain &&
-           step.fit.error.p99 > kLeap * toleranceUntil(step.record.to);
-  }
-
   void take(Step step, bool last) {
     missed_ += step.fit.error.p99;
-    leapt_ = leaps(step);
+    leapt_ = step.fit.end == AdaptiveEnd::noGain &&
+             step.fit.error.p99 > kLeap * toleranceUntil(step.record.to);
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
     folded_ = step.record.folded;
@@ -300,9 +293,10 @@ class StepFitter {
   double at_ = 0;       // of the way
   double folded_ = 0;   // share of the points inside, so far
   double missed_ = 0;   // the steps' errors, added up
-  bool leapt_ = false;  // the last step did
-  // That a step may be: half the way, or half of what folded last, doubled in time.
-  double longest_ = kLengthSlack / 2;
+  bool leapt_ = false;  // the last step left much more than it may, though it had the charges
+  // That a step may be through smoothed shapes: half of what folded last, doubled in time. On the
+  // usual way long steps tell soonest that it is lost.
+  double longest_ = 1;
   int inRow_ = 0;  // steps since then
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
