@@ -20,7 +20,7 @@ namespace {
 
 // Of the way: halves that are made where a coarse fit folds, and where only the full one does,
 // whose folds beside the surface smaller steps cure more seldom. The way through smoothed shapes is
-// about four times as long.
+// longer, so that the same step is a smaller part of it.
 constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32, kOfSmoothed = 0.25;
 // Of the tolerance: what a step before the last may leave, times its part of the way, and at least,
 // through smoothed shapes; what the last one may leave. Where one step's errors are large the
@@ -49,8 +49,8 @@ constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 // none, or up to 0.0004.
 constexpr double kManyCrossings = 0.01, kFewerCrossings = 0.1;
 constexpr int kLooks = 8;
-// Steps that shrinking, turning and growing again take at least; with fewer the usual way is
-// better.
+// With fewer steps allowed the usual way is better: limbs and pits take more to shrink, turn and
+// grow again.
 constexpr int kFewestSmoothed = 12;
 // Of the work until there to the work in all, by the way until there: the nearer to the target, the
 // shorter the steps and the more charges they take.
@@ -309,16 +309,16 @@ StepFit fitInSteps(const BoundaryPair& pair, const Points& inside,
   std::optional<StepFitter> smoothed;
   const bool may = settings.maxSteps >= kFewestSmoothed;
   const double crossing = may ? fitter.mostCrossings() : 0;
+  bool first = false;
   if (crossing > kManyCrossings) {
     smoothed.emplace(pair, inside, settings, Between::smoothed);
-    if (smoothed->mostCrossings() > kFewerCrossings * crossing) smoothed.reset();
+    first = smoothed->mostCrossings() <= kFewerCrossings * crossing;
   }
-  const bool first = smoothed.has_value();
   bool arrived = first && smoothed->go();
   if (arrived && !smoothed->runsThroughItself()) return smoothed->result();
   if (fitter.go()) return fitter.result();
   if (may && !first && fitter.runsThroughItself() && !outOfTime()) {
-    smoothed.emplace(pair, inside, settings, Between::smoothed);
+    if (!smoothed) smoothed.emplace(pair, inside, settings, Between::smoothed);
     arrived = smoothed->go();
   }
   if (arrived) return smoothed->result();

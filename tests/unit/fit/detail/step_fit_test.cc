@@ -197,7 +197,7 @@ TEST(StepFitRelease, ALimbIsTurnedIntoAPit) {
   EXPECT_LE(fit.steps.back().folded, 1e-3);
 }
 
-// The detour takes a dozen steps at least.
+// Limbs and pits take more steps by the detour than are allowed here.
 TEST(StepFitRelease, FewStepsMakeNoDetour) {
   const BoundaryPair pair = makeBoundaryPair(drawnOut(1.5), drawnOut(-1));
   Stages run;
