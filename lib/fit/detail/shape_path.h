@@ -16,8 +16,8 @@
 
 namespace innermap {
 
-// smoothed: see shape_smoother.h. A longer way, which without handles hardly ever runs through
-// itself.
+// smoothed: see shape_smoother.h. A longer way, which without handles runs through itself nowhere
+// that was looked at, unless an end does.
 enum class Between { interpolated, smoothed };
 
 class ShapePath {

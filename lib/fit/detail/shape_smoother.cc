@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "core/pi.h"
 #include "fit/detail/scaled_motion.h"
 #include "innermap/core/error.h"
 #include "innermap/surface/correspond.h"
@@ -14,10 +13,14 @@ namespace innermap {
 namespace {
 
 constexpr double kLeastCotangent = 0.02, kMostCotangent = 50;
-// Of the area, and the part of the way at each end on which s goes from 0 to 1. Without the ball a
-// tenth of this lambda left crossings between solids with limbs and pits; seven times as much made
-// stubs of limbs, and growing them again took three times as long.
-constexpr double kLambda = 0.003, kRamp = 0.25;
+// tau half way, of surfaces of area 1: on the sphere degree 1 keeps 0.78, degree 4 0.08; in the
+// mean of two metrics more makes stubs of limbs, which take long to grow again. A fifth of the
+// first leaves crossings.
+constexpr double kSphereTime = 0.01, kMeanTime = 0.003;
+constexpr int kFlowSteps = 4;  // implicit ones
+// Of the square of a triangle's longest edge, its area: slivers count as no thinner. All three
+// weights of one shrink alike, so that the matrix stays positive.
+constexpr double kThinnest = 1e-6;
 // Beyond this the volume is no measure of a shape's size: it runs through itself.
 constexpr double kMostGrowth = 2;
 
@@ -30,28 +33,29 @@ Eigen::MatrixX3d matrixOf(const Points& points) {
   return out;
 }
 
-// The surface as a ball that lies as the two do on average, as large as `from`. Empty where it is
-// not one closed surface without handles. Vertices in no triangle stay half way.
-std::optional<Eigen::MatrixX3d> ballOf(const Points& from, const Points& to,
-                                       const std::vector<Triangle>& triangles) try {
+// The vertices laid out on a sphere by area. Empty where the surface is not one closed one without
+// handles. Vertices that it has no use for are amid their neighbours.
+std::optional<Points> onSphere(const Points& from, const std::vector<Triangle>& triangles) try {
   Mesh mesh;
   mesh.vertices = from;
   mesh.triangles = triangles;
   const EmbeddedSurface laidOut(mesh);
   const SurfaceShells& surfaces = laidOut.surfaces();
   if (surfaces.shells.size() != 1 || surfaces.shells.front().genus != 0) return {};
-  Points middle(from.size()), sphere(from.size());
-  for (std::size_t v = 0; v < from.size(); ++v) {
-    middle[v] = 0.5 * (from[v] + to[v]);
-    if (const int i = surfaces.shellVertex[v].vertex; i >= 0)
-      sphere[v] = laidOut.layout(0).place[static_cast<std::size_t>(i)];
-  }
-  const double radius = std::cbrt(std::abs(signedVolume(from, triangles)) / (4 * kPi / 3));
-  if (!(radius > 0)) return {};
-  Points ball = movedBack(alignment(middle, sphere, triangles, 1 / radius), sphere);
-  for (std::size_t v = 0; v < ball.size(); ++v)
-    if (surfaces.shellVertex[v].vertex < 0) ball[v] = middle[v];
-  return matrixOf(ball);
+  Points out(from.size());
+  std::vector<bool> placed(from.size(), false);
+  for (std::size_t v = 0; v < from.size(); ++v)
+    if (const int i = surfaces.shellVertex[v].vertex; i >= 0) {
+      out[v] = laidOut.layout(0).place[static_cast<std::size_t>(i)];
+      placed[v] = true;
+    }
+  std::vector<int> neighbours(from.size(), 0);
+  for (const Triangle& t : triangles)
+    for (int k = 0; k < 3; ++k)
+      for (const int n : {t[(k + 1) % 3], t[(k + 2) % 3]})
+        if (!placed[t[k]] && placed[n])
+          out[t[k]] = out[t[k]] + (out[n] - out[t[k]]) / ++neighbours[t[k]];
+  return out;
 } catch (const DataError&) {
   return {};
 }
@@ -67,24 +71,63 @@ double edgeWeight(const Vec3& a, const Vec3& b, const Vec3& c) {
 struct ShapeSmoother::Implementation {
   std::vector<Triangle> triangles;
   double volume = 0;
+  double time = 0;
   Eigen::VectorXd masses;
-  std::optional<Eigen::MatrixX3d> ball;
+  Sparse stiffness;
   Eigen::SimplicialLDLT<Sparse> solver;
 
-  void add(const Points& at, std::vector<Eigen::Triplet<double>>& entries) {
+  // The mean of the metrics of these positions.
+  void measure(const std::vector<Points>& metrics) {
+    const auto count = static_cast<int>(metrics.front().size());
+    const double share = 1 / static_cast<double>(metrics.size());
+    masses = Eigen::VectorXd::Zero(count);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int v = 0; v < count; ++v) entries.emplace_back(v, v, 0);
+    for (const Points& at : metrics) add(at, share, entries);
+    // Vertices of no area go with their neighbours, those in no triangle stay where they are.
+    masses = masses.cwiseMax(1e-9 / count);
+    stiffness.resize(count, count);
+    stiffness.setFromTriplets(entries.begin(), entries.end());
+    solver.analyzePattern(stiffness);
+  }
+
+  void add(const Points& at, double share, std::vector<Eigen::Triplet<double>>& entries) {
     double total = 0;
     const auto areaOf = [&](const Triangle& t) {
       return norm(cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]])) / 2;
     };
     for (const Triangle& t : triangles) total += areaOf(t);
     if (!(total > 0)) throw DataError("the surface has no area");
-    for (const Triangle& t : triangles)
-      for (int k = 0; k < 3; ++k) {
-        const int i = t[k], j = t[(k + 1) % 3];
-        masses[i] += areaOf(t) / 3 / total / 2;
-        const double w = kLambda * edgeWeight(at[i], at[j], at[t[(k + 2) % 3]]) / 2 / 2;
+    for (const Triangle& t : triangles) {
+      const double area = areaOf(t);
+      double longest = 0;
+      for (int k = 0; k < 3; ++k) longest = std::max(longest, norm(at[t[(k + 1) % 3]] - at[t[k]]));
+      const double twice = 2 * std::max(area, kThinnest * longest * longest);
+      for (int k = 0; k < 3 && twice > 0; ++k) {
+        const int i = t[k], j = t[(k + 1) % 3], c = t[(k + 2) % 3];
+        masses[i] += share * area / 3 / total;
+        const double w = share * dot(at[i] - at[c], at[j] - at[c]) / twice / 2;
         entries.insert(entries.end(), {{i, i, w}, {j, j, w}, {i, j, -w}, {j, i, -w}});
       }
+    }
+  }
+
+  Eigen::RowVector3d middle(const Eigen::MatrixX3d& at) const {
+    return masses.transpose() * at / masses.sum();
+  }
+
+  double spread(const Eigen::MatrixX3d& at) const {
+    return std::sqrt(masses.dot((at.rowwise() - middle(at)).rowwise().squaredNorm()));
+  }
+
+  Eigen::MatrixX3d flow(Eigen::MatrixX3d at, double tau) {
+    Sparse matrix = tau / kFlowSteps * stiffness;
+    matrix.diagonal() += masses;
+    solver.factorize(matrix);
+    if (solver.info() != Eigen::Success) throw DataError("the surface is too thin to smooth");
+    for (int k = 0; k < kFlowSteps; ++k)
+      at = solver.solve(Eigen::MatrixX3d(masses.asDiagonal() * at));
+    return at;
   }
 };
 
@@ -93,19 +136,9 @@ ShapeSmoother::ShapeSmoother(const Points& from, const Points& to,
   auto out = std::make_unique<Implementation>();
   out->triangles = triangles;
   out->volume = signedVolume(from, triangles);
-  out->ball = ballOf(from, to, triangles);
-  const auto count = static_cast<int>(from.size());
-  out->masses = Eigen::VectorXd::Zero(count);
-  std::vector<Eigen::Triplet<double>> entries;
-  out->add(from, entries);
-  out->add(to, entries);
-  // Vertices of no area go with their neighbours, those in no triangle stay where they are.
-  out->masses = out->masses.cwiseMax(1e-9 / count);
-  for (int v = 0; v < count; ++v) entries.emplace_back(v, v, out->masses[v]);
-  Sparse matrix(count, count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  out->solver.compute(matrix);
-  if (out->solver.info() != Eigen::Success) throw DataError("the surface is too thin to smooth");
+  const std::optional<Points> sphere = onSphere(from, triangles);
+  out->time = sphere ? kSphereTime : kMeanTime;
+  out->measure(sphere ? std::vector<Points>{*sphere} : std::vector<Points>{from, to});
   implementation_ = std::move(out);
 }
 
@@ -113,14 +146,12 @@ ShapeSmoother::~ShapeSmoother() = default;
 ShapeSmoother::ShapeSmoother(ShapeSmoother&&) noexcept = default;
 
 Points ShapeSmoother::smoothed(const Points& shape, double t) const {
-  const Implementation& d = *implementation_;
-  const double way = std::clamp(std::min(t, 1 - t), 0.0, 0.5);  // from the nearer end
-  Eigen::MatrixX3d at = matrixOf(shape);
-  const Eigen::MatrixX3d smooth = d.solver.solve(Eigen::MatrixX3d(d.masses.asDiagonal() * at));
-  at += std::min(way / kRamp, 1.0) * (smooth - at);
-  if (d.ball) at += 2 * way * (*d.ball - at);
-  const Eigen::RowVector3d middle = d.masses.transpose() * at / d.masses.sum();
-  const auto points = [&](double growth) {
+  Implementation& d = *implementation_;
+  const double way = 2 * std::clamp(std::min(t, 1 - t), 0.0, 0.5);  // from the nearer end
+  if (!(way > 0)) return shape;
+  const Eigen::MatrixX3d before = matrixOf(shape), at = d.flow(before, d.time * way * way);
+  const Eigen::RowVector3d middle = d.middle(at);
+  const auto grown = [&](double growth) {
     Points out(shape.size());
     for (std::size_t v = 0; v < out.size(); ++v) {
       const Eigen::RowVector3d p =
@@ -129,9 +160,10 @@ Points ShapeSmoother::smoothed(const Points& shape, double t) const {
     }
     return out;
   };
-  Points out = points(1);
-  const double growth = std::cbrt(d.volume / signedVolume(out, d.triangles));
-  return growth > 0 && growth <= kMostGrowth ? points(growth) : out;
+  const double bySpread = d.spread(before) / d.spread(at);
+  Points out = grown(bySpread);
+  const double more = std::cbrt(d.volume / signedVolume(out, d.triangles));
+  return more > 0 && more <= kMostGrowth ? grown(more * bySpread) : out;
 }
 
 }  // namespace innermap

@@ -1,5 +1,4 @@
-// Shapes between two surfaces, smoothed and made rounder so that they do not run through
-// themselves.
+// Shapes between two surfaces, smoothed so that they do not run through themselves.
 #pragma once
 
 #include <memory>
@@ -13,19 +12,20 @@ namespace innermap {
 // the weights that keep a sum over edges well posed.
 double edgeWeight(const Vec3& a, const Vec3& b, const Vec3& c);
 
-// Takes a shape y to z = y + s (S y - y), and where the surface is a sphere's, further to
-// z + r (b - z), with b the surface as a ball: s is 1 from a quarter of the way on, r half way.
+// Takes the positions of a shape along the heat flow of a fixed metric: y becomes exp(-tau L) y,
+// with L the Laplacian (cotangents) and tau growing from 0 at both ends of the way to its most half
+// way.
 //
-// S = (M + lambda K)^-1 M, with K the cotangent Laplacian and M the area of each vertex, both
-// averaged over the two surfaces, each of area 1 (Desbrun, Meyer, Schroeder and Barr, "Implicit
-// fairing", SIGGRAPH 1999). As neither metric is that of the shape in between, limbs and pits of
-// either surface shrink in length and width together and are not pinched off: Kazhdan, Solomon and
-// Ben-Chen, "Can mean-curvature flow be modified to be non-singular?" (SGP 2012). y + s (S y - y)
-// takes all scales alike, so that detail does not go at once.
-//
-// S alone leaves the end of a long limb or pit exponentially small, and its folds with it. On the
-// ball each part has room by its area (EmbeddedSurface), so limbs and pits spread into cones. The
-// ball alone is not enough: the straight way there leads bent limbs through the body.
+// The metric of one closed surface without handles is the sphere's, on which it is laid out by area
+// (EmbeddedSurface): the flow damps the spherical harmonics of degree l by exp(-l (l + 1) tau /
+// r^2), as in Chung, Dalton, Shen, Evans and Davidson, "Weighted Fourier series representation and
+// its application to quantifying the amount of gray matter", IEEE Transactions on Medical Imaging
+// 26 (2007). What is left in the end is degree 1, the sphere under a linear map. On the way each
+// limb and pit draws back along itself and widens as far as it has room by its area. In a metric
+// of the surface's own, limbs are long tubes: their ends become exponentially small, with their
+// folds in them (Kazhdan, Solomon and Ben-Chen, "Can mean-curvature flow be modified to be
+// non-singular?", SGP 2012). Other surfaces have no better one here: theirs is the mean of the two,
+// and they go less far.
 class ShapeSmoother {
  public:
   // from, to: positions of the vertices of `triangles`. Throws DataError if both have no area.
@@ -34,11 +34,12 @@ class ShapeSmoother {
   ShapeSmoother(ShapeSmoother&&) noexcept;
 
   // The shape at t in (0, 1) of the way between them, with its volume as `from` has it.
+  // Not by two threads at once.
   Points smoothed(const Points& shape, double t) const;
 
  private:
   struct Implementation;
-  std::unique_ptr<const Implementation> implementation_;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace innermap

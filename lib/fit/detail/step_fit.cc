@@ -22,12 +22,17 @@ namespace {
 // whose folds beside the surface smaller steps cure more seldom. The way through smoothed shapes is
 // longer, so that the same step is a smaller part of it.
 constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32, kOfSmoothed = 0.25;
-// Of the tolerance: what a step before the last may leave, times its part of the way, and at least,
-// through smoothed shapes; what the last one may leave. Where one step's errors are large the
-// others' are too, and point the same way, so they add up in full. Tolerances small enough for
-// their sum cost more charges than a last step that also mends what the others left; those of the
-// shortest steps would take twice the charges that the least share takes.
-constexpr double kShare = 1.5, kLeastShare = 0.05, kLastShare = 0.6;
+// Of the tolerance: what a step before the last may leave, times its part of the way; what the last
+// one may leave. Where one step's errors are large the others' are too, and point the same way, so
+// they add up in full. Tolerances small enough for their sum cost more charges than a last step
+// that also mends what the others left.
+constexpr double kShare = 1.5, kLastShare = 0.6;
+// Through smoothed shapes the length tells little of the work. A step may leave the most at first;
+// while steps take fewer charges than kUsualSources the next may leave less, down to the least. A
+// tenth all the way took three times as long, and left no less in the end: charges that follow the
+// least detail roughen the surface for the steps after them.
+constexpr double kMostShare = 0.25, kLeastShare = 0.05;
+constexpr double kUsualSources = 3000, kSharePower = 0.5, kShareChange = 2;
 // Of the tolerance: what is left of a point's error, as mending all of it makes the map rough, with
 // many times the volume whose sense is undecided; and by how much a point is mended at most, as
 // what is farther off lies in creases, where charges do not help.
@@ -90,7 +95,8 @@ class StepFitter {
         path_(vertices_, pair.target.moved, triangles_, growthOf(pair), between),
         unit_(pair.target.diagonal / path_.rest().scale),
         boundary_(pair.solid(), carrySettings()),
-        inside_{inside, {}} {}
+        inside_{inside, {}},
+        leastShare_(smoothed_ ? kMostShare : 0) {}
 
   // False once the way is lost, where its end is not reached.
   bool go() {
@@ -154,8 +160,8 @@ class StepFitter {
   StepFit result() {
     std::vector<HarmonicMap> steps = boundary_.steps();
     steps.back() = HarmonicMap(movedBy(path_.rest(), steps.back().field()));
-    return {ComposedMap(std::move(steps)), std::move(records_),
-            boundary_.errorFrom(path_.at(at_), unit_), end_};
+    return {ComposedMap(std::move(steps)), std::move(records_), boundary_.errorFrom(now_, unit_),
+            end_};
   }
 
  private:
@@ -181,8 +187,7 @@ class StepFitter {
   }
 
   double toleranceUntil(double end) const {
-    const double least = smoothed_ ? kLeastShare : 0;
-    const double share = end < 1 ? std::max(kShare * (end - at_), least) : kLastShare;
+    const double share = end < 1 ? std::max(kShare * (end - at_), leastShare_) : kLastShare;
     return std::max(share * settings_.tolerance, kSmallestTolerance);
   }
 
@@ -195,13 +200,12 @@ class StepFitter {
   // level of charges are few or none where those of the whole fit are none.
   Step fitStep(double to, bool mayHalve) {
     const bool last = !(to < 1);
-    const Points now = path_.at(at_);
     Points ways = path_.at(to);
-    for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now[v];
+    for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now_[v];
     std::optional<Mending> mending;
     if (last && at_ > 0) {
       const double tolerance = settings_.tolerance * unit_;
-      mending = Mending{now, kKept * tolerance, kMended * tolerance};
+      mending = Mending{now_, kKept * tolerance, kMended * tolerance};
     }
     AdaptiveSettings s;
     s.tolerance = toleranceUntil(to);
@@ -266,15 +270,24 @@ class StepFitter {
 
   // Whether what is left of the way cannot make the map good.
   bool isLost() const {
-    return missed_ > kLost * settings_.tolerance || leapt_ || folded_ > kManyFolds;
+    return (!smoothed_ && missed_ > kLost * settings_.tolerance) || leapt_ || folded_ > kManyFolds;
+  }
+
+  void changeLeastShare(std::size_t sources) {
+    const double change = std::pow(static_cast<double>(sources) / kUsualSources, kSharePower);
+    leastShare_ = std::clamp(leastShare_ * std::clamp(change, 1 / kShareChange, kShareChange),
+                             kLeastShare, kMostShare);
   }
 
   void take(Step step, bool last) {
     missed_ += step.fit.error.p99;
-    leapt_ = step.fit.end == AdaptiveEnd::noGain &&
-             step.fit.error.p99 > kLeap * toleranceUntil(step.record.to);
+    const double most =
+        std::max(toleranceUntil(step.record.to), smoothed_ ? kMostShare * settings_.tolerance : 0);
+    leapt_ = step.fit.end == AdaptiveEnd::noGain && step.fit.error.p99 > kLeap * most;
+    if (smoothed_) changeLeastShare(step.record.sources);
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
+    now_ = path_.at(at_);
     folded_ = step.record.folded;
     records_.push_back(step.record);
     inside_ = std::move(step.inside);
@@ -290,14 +303,16 @@ class StepFitter {
   CarriedBoundary boundary_;
   MappedPoints inside_;
   std::vector<MapStep> records_;
-  double at_ = 0;       // of the way
+  double at_ = 0;  // of the way
+  Points now_ = path_.at(0);
   double folded_ = 0;   // share of the points inside, so far
   double missed_ = 0;   // the steps' errors, added up
   bool leapt_ = false;  // the last step left much more than it may, though it had the charges
   // That a step may be through smoothed shapes: half of what folded last, doubled in time. On the
   // usual way long steps tell soonest that it is lost.
   double longest_ = 1;
-  int inRow_ = 0;  // steps since then
+  double leastShare_;  // of the tolerance, that a step may leave however short it is
+  int inRow_ = 0;      // steps since then
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 

@@ -251,7 +251,7 @@ def fit(
     *meshes: Any, tolerance: Optional[float] = None, charges: Optional[int] = None,
     collocation: Optional[int] = None, max_charges: int = 100000,
     interpolation: Literal['auto', 'linear', 'smooth'] = 'auto',
-    one_to_one: Literal['auto', 'on', 'off'] = 'auto', max_steps: int = 48,
+    one_to_one: Literal['auto', 'on', 'off'] = 'auto', max_steps: int = 64,
     prove: Literal['off', 'core', 'full'] = 'core', proof_cells: float = 8, seed: int = 1,
     distance: Optional[float] = None, radius_ratio: Optional[float] = None,
     solver: Literal['auto', 'dense', 'iterative'] = 'auto',

@@ -70,7 +70,7 @@ struct FitMapSettings {
   std::optional<ShellSettings> shell;
   Interpolation interpolation = Interpolation::automatic;
   OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
-  int maxSteps = 48;
+  int maxSteps = 64;
   Prove prove = Prove::core;
   // ProofSettings::cellsPerCharge. Of maps in three to five steps this leaves 1 to 3% of the solid
   // undecided, where a hundred leave 0.01%. Of maps in more than eight steps there are fewer, by

@@ -79,15 +79,29 @@ std::pair<double, double> distances(const Points& points, const std::vector<Tria
   return out;
 }
 
-TEST(ShapeSmoother, HalfWayASurfaceWithoutHandlesIsABall) {
-  const Mesh from = drawnOut(1.5), to = drawnOut(-1);
-  const ShapeSmoother smoother(from.vertices, to.vertices, from.triangles);
-  for (const Points& shape : {from.vertices, to.vertices}) {
-    const Points half = smoother.smoothed(shape, 0.5);
-    EXPECT_EQ(selfIntersections(half, from.triangles).size(), 0);
-    const auto [least, most] = distances(half, from.triangles);
-    EXPECT_LT(most, 1.02 * least);  // the polyhedron's middle is not the sphere's
-  }
+// Columns that are spherical harmonics of degree 1, 2 and 3: the flow damps each by its own factor,
+// and the volume scales all three alike.
+TEST(ShapeSmoother, DampsSphericalHarmonicsByDegree) {
+  const Mesh ball = shapes::icosphere(3);
+  const ShapeSmoother smoother(ball.vertices, ball.vertices, ball.triangles);
+  Points harmonics;
+  for (const Vec3& p : ball.vertices)
+    harmonics.push_back({p.x, p.x * p.y, p.z * (5 * p.z * p.z - 3 * dot(p, p))});
+  const Points damped = smoother.smoothed(harmonics, 0.5);
+  const auto kept = [&](double Vec3::*column) {
+    double before = 0, after = 0;
+    for (std::size_t v = 0; v < harmonics.size(); ++v) {
+      before += std::pow(harmonics[v].*column, 2);
+      after += std::pow(damped[v].*column, 2);
+    }
+    return std::sqrt(after / before);
+  };
+  // Four implicit steps of tau / 4 each, tau = 0.01, on a sphere of area 1: r^2 = 1 / (4 pi).
+  const auto expected = [](int degree) {
+    return std::pow(1 + 0.01 / 4 * degree * (degree + 1) * 4 * std::acos(-1.0), -4);
+  };
+  EXPECT_NEAR(kept(&Vec3::y) / kept(&Vec3::x), expected(2) / expected(1), 0.02);
+  EXPECT_NEAR(kept(&Vec3::z) / kept(&Vec3::x), expected(3) / expected(1), 0.02);
 }
 
 TEST(ShapeSmoother, ASurfaceWithAHandleKeepsIt) {
@@ -110,9 +124,8 @@ TEST(ShapeSmoother, VerticesOfNoArea) {
   from.triangles.push_back({b, a, count + 1});
   const ShapeSmoother smoother(from.vertices, from.vertices, from.triangles);
   const Points shape = smoother.smoothed(from.vertices, 0.5);
-  const double reach = 2 * norm(from.vertices[static_cast<std::size_t>(b)] -
-                                from.vertices[static_cast<std::size_t>(a)]);
-  EXPECT_LT(norm(shape.back() - shape[static_cast<std::size_t>(a)]), reach);
+  const double edge = norm(shape[static_cast<std::size_t>(b)] - shape[static_cast<std::size_t>(a)]);
+  EXPECT_LT(norm(shape.back() - shape[static_cast<std::size_t>(a)]), 2 * edge);
   const Points near = smoother.smoothed(from.vertices, 1e-9);
   EXPECT_LT(norm(near[static_cast<std::size_t>(count)] - Vec3{3, 4, 5}), 1e-6);
 }
