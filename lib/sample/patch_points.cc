@@ -93,9 +93,10 @@ std::vector<Candidate> throwDarts(
   const std::size_t part = std::max(kLeastPart, round / kParts);
   std::vector<Candidate> candidates;
   std::size_t drawn = 0;
-  for (int r = 0; r < kMostRounds && area > 0; ++r, drawn += round) {
+  const auto wanted = [&] { return kept.size() < settings.most; };
+  for (int r = 0; r < kMostRounds && area > 0 && wanted(); ++r, drawn += round) {
     std::size_t fresh = 0;
-    for (std::size_t first = 0; first < round; first += part) {
+    for (std::size_t first = 0; first < round && wanted(); first += part) {
       candidates.resize(std::min(part, round - first));
       parallelBlocks(
           candidates.size(), 16,

@@ -27,12 +27,17 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32, kOfSmoothed 
 // they add up in full. Tolerances small enough for their sum cost more charges than a last step
 // that also mends what the others left.
 constexpr double kShare = 1.5, kLastShare = 0.6;
-// Through smoothed shapes the length tells little of the work. A step may leave the most at first;
-// while steps take fewer charges than kUsualSources the next may leave less, down to the least. A
-// tenth all the way took three times as long, and left no less in the end: charges that follow the
-// least detail roughen the surface for the steps after them.
-constexpr double kMostShare = 0.25, kLeastShare = 0.05;
+// Through smoothed shapes the length tells little of the work. A step may leave the usual share at
+// first; while steps take fewer charges than kUsualSources the next may leave less, down to the
+// least, and after one that missed it more, up to the most. A tenth all the way took twice as long,
+// and left no less in the end: charges that follow the least detail roughen the surface for the
+// steps after them.
+constexpr double kLeastShare = 0.05, kUsualShare = 0.25, kMostShare = 0.5;
 constexpr double kUsualSources = 3000, kSharePower = 0.5, kShareChange = 2;
+// Times its tolerance that a step through smoothed shapes leaves although it takes fewer charges
+// than usual: the surface is crumpled there, and charges find no room. Each step after it takes
+// many seconds, and leaves as much.
+constexpr double kCrumpled = 1.3;
 // Of the tolerance: what is left of a point's error, as mending all of it makes the map rough, with
 // many times the volume whose sense is undecided; and by how much a point is mended at most, as
 // what is farther off lies in creases, where charges do not help.
@@ -96,7 +101,7 @@ class StepFitter {
         unit_(pair.target.diagonal / path_.rest().scale),
         boundary_(pair.solid(), carrySettings()),
         inside_{inside, {}},
-        leastShare_(smoothed_ ? kMostShare : 0) {}
+        leastShare_(smoothed_ ? kUsualShare : 0) {}
 
   // False once the way is lost, where its end is not reached.
   bool go() {
@@ -273,18 +278,27 @@ class StepFitter {
     return (!smoothed_ && missed_ > kLost * settings_.tolerance) || leapt_ || folded_ > kManyFolds;
   }
 
-  void changeLeastShare(std::size_t sources) {
+  bool leaps(const MapStep& step) const {
+    const double tolerance = toleranceUntil(step.to);
+    if (!smoothed_) return step.error > kLeap * tolerance;
+    return step.error > kLeap * std::max(tolerance, kUsualShare * settings_.tolerance) ||
+           (step.error > kCrumpled * tolerance && step.sources < kUsualSources);
+  }
+
+  void changeLeastShare(std::size_t sources, bool met) {
+    if (!met) {
+      leastShare_ = std::min(kShareChange * leastShare_, kMostShare);
+      return;
+    }
     const double change = std::pow(static_cast<double>(sources) / kUsualSources, kSharePower);
     leastShare_ = std::clamp(leastShare_ * std::clamp(change, 1 / kShareChange, kShareChange),
-                             kLeastShare, kMostShare);
+                             kLeastShare, std::max(kUsualShare, leastShare_));
   }
 
   void take(Step step, bool last) {
     missed_ += step.fit.error.p99;
-    const double most =
-        std::max(toleranceUntil(step.record.to), smoothed_ ? kMostShare * settings_.tolerance : 0);
-    leapt_ = step.fit.end == AdaptiveEnd::noGain && step.fit.error.p99 > kLeap * most;
-    if (smoothed_) changeLeastShare(step.record.sources);
+    leapt_ = step.fit.end == AdaptiveEnd::noGain && leaps(step.record);
+    if (smoothed_) changeLeastShare(step.record.sources, step.fit.end == AdaptiveEnd::met);
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
     now_ = path_.at(at_);
