@@ -12,6 +12,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/fit/fit_map.h"
+#include "innermap/mesh/check.h"
 #include "innermap/proof/prove.h"
 
 namespace innermap {
@@ -52,6 +53,12 @@ constexpr int kStepsInRow = 4;
 constexpr double kLengthSlack = 1.01;  // for rounding
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
+// The way goes through smoothed shapes at once where one of the others has more crossings a
+// triangle than that, and each of the smoothed ones at most so many times as many. Limbs that
+// turned into pits had 0.015 and more, and smoothed mostly none; between whole models there were
+// none, or up to 0.0004.
+constexpr double kManyCrossings = 0.01, kFewerCrossings = 0.1;
+constexpr int kLooks = 8;
 // With fewer steps allowed the usual way is better: limbs and pits take more to shrink, turn and
 // grow again.
 constexpr int kFewestSmoothed = 12;
@@ -131,6 +138,19 @@ class StepFitter {
       if (isLost() && !ends.empty()) return false;
     }
     return true;
+  }
+
+  // Pairs of triangles that run through one another in the worst of the shapes on the way; over the
+  // number of triangles.
+  double mostCrossings() const {
+    std::size_t most = 0;
+    for (int i = 1; i < kLooks; ++i) {
+      std::size_t count = 0;
+      forEachSelfIntersection(path_.at(static_cast<double>(i) / kLooks), triangles_,
+                              [&](const Crossing&) { ++count; });
+      most = std::max(most, count);
+    }
+    return static_cast<double>(most) / static_cast<double>(triangles_.size());
   }
 
   // Whether smoothed shapes may help: they do not where charges are missing.
@@ -315,11 +335,22 @@ class StepFitter {
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside,
                    const StepFitSettings& settings) {
   StepFitter fitter(pair, inside, settings, Between::interpolated);
-  if (fitter.go()) return fitter.result();
-  if (settings.maxSteps >= kFewestSmoothed && fitter.runsThroughItself() && !outOfTime()) {
-    StepFitter smoothed(pair, inside, settings, Between::smoothed);
-    if (smoothed.go()) return smoothed.result();
+  std::optional<StepFitter> smoothed;
+  const bool may = settings.maxSteps >= kFewestSmoothed;
+  const double crossing = may ? fitter.mostCrossings() : 0;
+  bool first = false;
+  if (crossing > kManyCrossings) {
+    smoothed.emplace(pair, inside, settings, Between::smoothed);
+    first = smoothed->mostCrossings() <= kFewerCrossings * crossing;
   }
+  bool arrived = first && smoothed->go();
+  if (arrived && !smoothed->runsThroughItself()) return smoothed->result();
+  if (fitter.go()) return fitter.result();
+  if (may && !first && fitter.runsThroughItself() && !outOfTime()) {
+    if (!smoothed) smoothed.emplace(pair, inside, settings, Between::smoothed);
+    arrived = smoothed->go();
+  }
+  if (arrived) return smoothed->result();
   fitter.jump();
   return fitter.result();
 }

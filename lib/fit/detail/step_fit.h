@@ -35,9 +35,9 @@ struct StepFit {
 // from where they should be. A step that folds points inside is halved while there are fewer than
 // maxSteps: where its first charges fold more than a quarter, or the whole fit more than half, of
 // what is left of `folds`; or where cells are proven to fold, if that is asked for. Where
-// intermediate shapes run through themselves the way is lost, and another goes through smoothed
-// ones (shape_smoother.h); where both are lost, one step does the rest of the first. inside: points
-// of the source. Throws DataError, MemoryError, Cancelled.
+// intermediate shapes run through themselves the way goes through smoothed ones (shape_smoother.h),
+// at once or when it is lost; where both are lost, one step does the rest of the first. inside:
+// points of the source. Throws DataError, MemoryError, Cancelled.
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings);
 
 }  // namespace innermap
