@@ -19,6 +19,15 @@ using Eigen::Vector3d;
 // Weight of the straight way of each vertex beside that of its edges: keeps parts that nothing
 // connects where they belong, and is too small to bend anything.
 constexpr double kStraight = 1e-6;
+constexpr double kLeastCotangent = 0.02, kMostCotangent = 50;
+
+// The cotangent of the angle at `c` in the triangle a, b, c; of slivers what is nearest to it among
+// the weights that keep a sum over edges well posed.
+double edgeWeight(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double area = norm(cross(a - c, b - c));
+  return area > 0 ? std::clamp(dot(a - c, b - c) / area, kLeastCotangent, kMostCotangent)
+                  : kLeastCotangent;
+}
 
 // Columns: two edges and the normal, as long as the root of the area.
 Matrix3d frameOf(const Points& at, const Triangle& t) {

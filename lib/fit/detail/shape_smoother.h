@@ -8,10 +8,6 @@
 
 namespace innermap {
 
-// The cotangent of the angle at `c` in the triangle a, b, c; of slivers what is nearest to it among
-// the weights that keep a sum over edges well posed.
-double edgeWeight(const Vec3& a, const Vec3& b, const Vec3& c);
-
 // Takes the positions of a shape along the heat flow of a fixed metric: y becomes exp(-tau L) y,
 // with L the Laplacian (cotangents) and tau growing from 0 at both ends of the way to its most half
 // way.
@@ -20,7 +16,7 @@ double edgeWeight(const Vec3& a, const Vec3& b, const Vec3& c);
 // (EmbeddedSurface): the flow damps the spherical harmonics of degree l by exp(-l (l + 1) tau /
 // r^2), as in Chung, Dalton, Shen, Evans and Davidson, "Weighted Fourier series representation and
 // its application to quantifying the amount of gray matter", IEEE Transactions on Medical Imaging
-// 26 (2007). What is left in the end is degree 1, the sphere under a linear map. On the way each
+// 26 (2007). In the limit degree 1 is left, the sphere under a linear map. On the way each
 // limb and pit draws back along itself and widens as far as it has room by its area. In a metric
 // of the surface's own, limbs are long tubes: their ends become exponentially small, with their
 // folds in them (Kazhdan, Solomon and Ben-Chen, "Can mean-curvature flow be modified to be

@@ -29,9 +29,9 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32, kOfSmoothed 
 constexpr double kShare = 1.5, kLastShare = 0.6;
 // Through smoothed shapes the length tells little of the work. A step may leave the usual share at
 // first; while steps take fewer charges than kUsualSources the next may leave less, down to the
-// least, and after one that missed it more, up to the most. A tenth all the way took twice as long,
-// and left no less in the end: charges that follow the least detail roughen the surface for the
-// steps after them.
+// least, and after one that missed it more, up to the most. A tenth all the way took half as long
+// again, and left hardly less in the end: charges that follow the least detail roughen the surface
+// for the steps after them.
 constexpr double kLeastShare = 0.05, kUsualShare = 0.25, kMostShare = 0.5;
 constexpr double kUsualSources = 3000, kSharePower = 0.5, kShareChange = 2;
 // Times its tolerance that a step through smoothed shapes leaves although it takes fewer charges
