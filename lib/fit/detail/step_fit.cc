@@ -34,9 +34,9 @@ constexpr double kShare = 1.5, kLastShare = 0.6;
 // for the steps after them.
 constexpr double kLeastShare = 0.05, kUsualShare = 0.25, kMostShare = 0.5;
 constexpr double kUsualSources = 3000, kSharePower = 0.5, kShareChange = 2;
-// Times its tolerance that a step through smoothed shapes leaves although it takes fewer charges
-// than usual: the surface is crumpled there, and charges find no room. Each step after it takes
-// many seconds, and leaves as much.
+// Times its tolerance, or the usual one where that is more, that a step through smoothed shapes
+// leaves although it takes fewer charges than usual: the surface is crumpled there, and charges
+// find no room. Each step after it takes many seconds, and leaves as much.
 constexpr double kCrumpled = 1.3;
 // Of the tolerance: what is left of a point's error, as mending all of it makes the map rough, with
 // many times the volume whose sense is undecided; and by how much a point is mended at most, as
@@ -279,10 +279,10 @@ class StepFitter {
   }
 
   bool leaps(const MapStep& step) const {
-    const double tolerance = toleranceUntil(step.to);
+    double tolerance = toleranceUntil(step.to);
     if (!smoothed_) return step.error > kLeap * tolerance;
-    return step.error > kLeap * std::max(tolerance, kUsualShare * settings_.tolerance) ||
-           (step.error > kCrumpled * tolerance && step.sources < kUsualSources);
+    tolerance = std::max(tolerance, kUsualShare * settings_.tolerance);
+    return step.error > (step.sources < kUsualSources ? kCrumpled : kLeap) * tolerance;
   }
 
   void changeLeastShare(std::size_t sources, bool met) {
