@@ -5,7 +5,8 @@ the library (lib/ROOM/), or the room's own (a detail/ in it).
 
 Found are: includes of rooms that are not below, of a header that is not there, of another room's own; public
 headers that include private ones, or are more than MOST_PUBLIC, or that no test of the room includes;
-programs that include private headers of other rooms than OPEN; files that include themselves by way of
+programs that include private headers of other rooms than OPEN; includes of parts that a build may
+leave out (COMPONENTS); files that include themselves by way of
 others; two headers that define types of one name (their files would link to either's code); a solve/ that
 knows of meshes or grids.
 
@@ -20,6 +21,8 @@ FORBIDDEN = {"solve": r"\bmesh\b|\bMesh\b|openvdb"}
 # Rooms whose private headers serve the programs of this repository too.
 OPEN = ("core", "jobs", "report")
 MOST_PUBLIC = 50
+# Rooms that a build may leave out, and with them all folders of their names (cmake/InnermapComponents.cmake).
+COMPONENTS = ("tetra", "study")
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b(?!::)[^;(]*\{", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
 PUBLIC = "lib/include/innermap"
@@ -121,10 +124,25 @@ def check_tests(root, room):
 def check_outside(root, top, edges):
     """Programs see public headers, and those of the rooms that are open to them."""
     for path in sources(os.path.join(root, top)):
+        here = os.path.relpath(path, root)
+        program = os.path.join(root, *here.split("/")[:2])
         for included in INCLUDE.findall(read(path)):
             found = parse(included, edges)
+            if os.path.exists(os.path.join(program, included)):
+                continue  # a folder of its own, named as a room
             if found and not found[1] and (found[2] or found[0] not in OPEN):
-                yield f"{os.path.relpath(path, root)}: {included} is private"
+                yield f"{here}: {included} is private"
+
+
+def check_components(root):
+    """What stays in a build includes nothing of what it may leave out."""
+    for top in ("lib", "tools"):
+        for path in sources(os.path.join(root, top)):
+            here = os.path.relpath(path, root)
+            for included in INCLUDE.findall(read(path)):
+                for component in COMPONENTS:
+                    if component in included.split("/")[:-1] and component not in here.split("/")[:-1]:
+                        yield f'{here}: includes "{included}", which a build may leave out'
 
 
 def unit_of(path):
@@ -189,6 +207,7 @@ def check(root):
         yield from check_outside(root, top, edges)
     yield from check_cycles(root)
     yield from check_names(root)
+    yield from check_components(root)
     for room in sorted(edges):
         yield from check_room(root, room, edges)
         yield from check_tests(root, room)

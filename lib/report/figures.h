@@ -104,7 +104,7 @@ Figures correspondenceFigures(const MeshCorrespondence* map);
 // "boundary_map" of hexahedra
 Figures boundaryMapFigures(const MapQuality& quality);
 
-// -- cells (cell_figures.cc) --
+// -- cells (tetra/cell_figures.cc) --
 
 Figures figures(const CellProof& proof);
 // "cells"
@@ -141,7 +141,7 @@ Figures figures(const CarriedGeometry& carried);   // "geometry"
 Figures figures(const ExrSliceResult& slices);     // "slices"
 Figures figures(const SectionResult& section);     // "section"
 
-// -- studies (study_figures.cc) --
+// -- studies (study/study_figures.cc) --
 
 // best, cheapest: what makes a run of these, as the user writes it; empty: there is none.
 Figures studyFigures(const Study& study, const StudyFindings& findings, const std::string& best,

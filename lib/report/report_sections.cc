@@ -9,11 +9,6 @@
 #include "innermap/io/pictures.h"
 #include "innermap/io/volume_texture.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/study/study.h"
-#include "innermap/tetra/compare_fem.h"
-#include "innermap/tetra/hexahedralize.h"
-#include "innermap/tetra/remesh_cells.h"
-#include "innermap/tetra/tetrahedralize.h"
 #include "innermap/texture/solid_texture.h"
 #include "innermap/transfer/distance_transfer.h"
 #include "innermap/transfer/geometry.h"
@@ -31,25 +26,9 @@ CarriedMass anyMass() {
   return out;
 }
 
-// Of several commands, whose figures of the same key have the same type.
-Figures merged(std::initializer_list<Figures> parts) {
-  Figures out;
-  for (const Figure& f : together(parts)) {
-    const auto same = std::find_if(out.begin(), out.end(),
-                                   [&](const Figure& other) { return other.key == f.key; });
-    if (same == out.end())
-      out.push_back(f);
-    else if (same->value.index() != f.value.index())
-      throw Error("two figures of different types are called " + f.key);
-  }
-  return out;
-}
-
 // Results of which nothing is known.
 struct Unknown {
   MapGrids grids;
-  Tetrahedralization tetrahedra;
-  Hexahedralization hexahedra;
   SolidTexture texture;
 };
 
@@ -172,7 +151,7 @@ std::vector<ReportSection> carrySections(const Unknown& u) {
       {"section", "Section", "A picture's plane and colours.", figures(SectionResult{}), {}}};
 }
 
-std::vector<ReportSection> meshSections(const Unknown& u) {
+std::vector<ReportSection> meshSections() {
   return {{"correspondence",
            "Correspondence",
            "Of one surface laid on another.",
@@ -189,43 +168,39 @@ std::vector<ReportSection> meshSections(const Unknown& u) {
            merged({figures(LayoutQuality{}), shellFigures(0)}),
            {}},
           {"findings", "Findings", "What is wrong with the mesh.", findingFigures("*", 0), {}},
-          {"level_set", "Level set", "The grid beside the mesh.", figures(LevelSetCheck{}), {}},
-          {"cells", "Cells", "", cellFigures({}, {}, {}), {}},
-          {"boundary", "Boundary", "Of a mesh of cells.", figures(BoundaryFit{}), {}},
-          {"topology", "Topology", "Of a mesh of cells.", topologyFigures(u.tetrahedra), {}},
-          {"lattice", "Lattice", "That cells were cut from.", latticeFigures(u.tetrahedra), {}},
-          {"features",
-           "Sharp edges",
-           "",
-           merged({featureFigures(u.tetrahedra, 1), featureFigures(u.hexahedra)}),
-           {}},
-          {"remesh", "Remesh", "Cells carried onto another solid.", figures(Remesh{}, 1), {}},
-          {"polycube",
-           "Polycube",
-           "Cubes that stand in for the solid.",
-           merged({figures(Polycube{}), polycubeMeshFigures(0)}),
-           {}},
-          {"hexahedra", "Hexahedra", "", figures(u.hexahedra), {}},
-          {"boundary_map",
-           "Boundary map",
-           "Of a surface onto cubes.",
-           boundaryMapFigures(MapQuality{}),
-           {}},
-          {"comparison",
-           "Comparison",
-           "Harmonic map and finite elements, one value a method in each list.",
-           figures(CompareFem{}),
-           {}},
-          {"study", "Study", "Of the runs of a study.", studyFigures({}, {}, "", ""), {}}};
+          {"level_set", "Level set", "The grid beside the mesh.", figures(LevelSetCheck{}), {}}};
 }
 
 }  // namespace
 
+Figures merged(std::initializer_list<Figures> parts) {
+  Figures out;
+  for (const Figure& f : together(parts)) {
+    const auto same = std::find_if(out.begin(), out.end(),
+                                   [&](const Figure& other) { return other.key == f.key; });
+    if (same == out.end())
+      out.push_back(f);
+    else if (same->value.index() != f.value.index())
+      throw Error("two figures of different types are called " + f.key);
+  }
+  return out;
+}
+
 std::vector<ReportSection> reportSections() {
   const Unknown unknown;
   std::vector<ReportSection> out;
-  for (const auto& part : {mapSections(unknown), carrySections(unknown), meshSections(unknown)})
+  const auto add = [&](const std::vector<ReportSection>& part) {
     out.insert(out.end(), part.begin(), part.end());
+  };
+  add(mapSections(unknown));
+  add(carrySections(unknown));
+  add(meshSections());
+#if INNERMAP_TETRA
+  add(cellSections());
+#endif
+#if INNERMAP_STUDY
+  add(studySections());
+#endif
   out.push_back({"memory_after_bytes", "Memory after stages", "", memoryFigures("*", 0), {}});
   out.push_back(
       {"", "", "", merged({outsideFigures(0), stoppedByTimeFigures(), planFigures(1, 0)}), {}});

@@ -2,6 +2,7 @@
 // from it.
 #pragma once
 
+#include <initializer_list>
 #include <vector>
 
 #include "report/schema.h"
@@ -9,5 +10,12 @@
 namespace innermap {
 
 std::vector<ReportSection> reportSections();
+
+// Of parts that a build may leave out, in the folders of their names.
+std::vector<ReportSection> cellSections();
+std::vector<ReportSection> studySections();
+
+// Of several commands, whose figures of the same key have the same type.
+Figures merged(std::initializer_list<Figures> parts);
 
 }  // namespace innermap

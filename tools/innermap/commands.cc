@@ -10,16 +10,40 @@ namespace innermap::tool {
 
 std::vector<Command> allCommands() {
   constexpr Command (*kMakers[])() = {
-      makeMapCommand,        makeCorrespondCommand,    makeSphereCommand,
-      makeFitCommand,        makeEvaluateCommand,      makeVerifyCommand,
-      makeSequenceCommand,   makeDeformCommand,        makeJoinCommand,
-      makeHarmonicCommand,   makeWeightsCommand,       makeTextureCommand,
-      makePushCommand,       makePullCommand,          makeTransferDistanceCommand,
-      makeCheckCommand,      makeVoxelizeCommand,      makeTetrahedralizeCommand,
-      makePolycubeCommand,   makeHexahedralizeCommand, makeRemeshCommand,
-      makeCompareFemCommand, makeStudyCommand,         makeSliceCommand,
-      makeExportCommand,     makeImportCommand,        makeInfoCommand,
-      makeReportCommand,     makeHelpCommand};
+    makeMapCommand,
+    makeCorrespondCommand,
+    makeSphereCommand,
+    makeFitCommand,
+    makeEvaluateCommand,
+    makeVerifyCommand,
+    makeSequenceCommand,
+    makeDeformCommand,
+    makeJoinCommand,
+    makeHarmonicCommand,
+    makeWeightsCommand,
+    makeTextureCommand,
+    makePushCommand,
+    makePullCommand,
+    makeTransferDistanceCommand,
+    makeCheckCommand,
+    makeVoxelizeCommand,
+#if INNERMAP_TETRA
+    makeTetrahedralizeCommand,
+    makePolycubeCommand,
+    makeHexahedralizeCommand,
+    makeRemeshCommand,
+    makeCompareFemCommand,
+#endif
+#if INNERMAP_STUDY
+    makeStudyCommand,
+#endif
+    makeSliceCommand,
+    makeExportCommand,
+    makeImportCommand,
+    makeInfoCommand,
+    makeReportCommand,
+    makeHelpCommand
+  };
   std::vector<Command> out;
   out.reserve(std::size(kMakers));
   for (const auto make : kMakers) out.push_back(make());
@@ -36,7 +60,14 @@ std::vector<Topic> commandTopics() {
         "polycube"}},
       {"files and pictures", {"info", "slice", "export", "import", "report"}},
       {"other", {}}};
-  for (const Command& c : allCommands()) {
+  const std::vector<Command> all = allCommands();
+  const auto isLeftOut = [&](const std::string& name) {
+    return std::none_of(all.begin(), all.end(), [&](const Command& c) { return c.name() == name; });
+  };
+  for (Topic& topic : topics)
+    topic.commands.erase(std::remove_if(topic.commands.begin(), topic.commands.end(), isLeftOut),
+                         topic.commands.end());
+  for (const Command& c : all) {
     const auto has = [&](const Topic& topic) {
       return std::count(topic.commands.begin(), topic.commands.end(), c.name()) > 0;
     };

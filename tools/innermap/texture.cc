@@ -9,7 +9,7 @@
 #include "innermap/texture/solid_texture.h"
 #include "inputs.h"
 #include "job_cost.h"
-#include "jobs/solid_needs.h"
+#include "jobs/texture_need.h"
 #include "report/figures.h"
 #include "report/report_figures.h"
 #include "report/verdict.h"

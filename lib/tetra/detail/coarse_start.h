@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "innermap/lattice/cell_mesh.h"
-#include "innermap/tetra/cells.h"
 #include "tetra/detail/guide_surface.h"
+#include "transfer/cell_locator.h"
 
 namespace innermap {
 

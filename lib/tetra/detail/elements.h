@@ -9,7 +9,7 @@
 #include "innermap/core/matrix.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/levelset/solid.h"
-#include "innermap/tetra/cells.h"
+#include "transfer/cell_locator.h"
 
 namespace innermap {
 

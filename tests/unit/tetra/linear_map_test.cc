@@ -2,9 +2,9 @@
 
 #include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/tetra/cells.h"
 #include "innermap/tetra/remesh_cells.h"
 #include "innermap/tetra/tetrahedralize.h"
+#include "innermap/transfer/inverse_map.h"
 #include "tetra/kuhn_mesh.h"
 #include "tetra/mapped_balls.h"
 

@@ -16,7 +16,7 @@
 #include "innermap/evaluate/grids.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/io/geometry_file.h"
-#include "innermap/tetra/cells.h"
+#include "innermap/transfer/inverse_map.h"
 #include "innermap/transfer/push_pull.h"
 
 namespace py = pybind11;

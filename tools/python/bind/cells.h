@@ -12,8 +12,9 @@
 namespace innermap::python {
 
 void bindCells(pybind11::module_& m);
-void bindFill(pybind11::module_& m);    // after bindCells: solids filled with cells
-void bindRemesh(pybind11::module_& m);  // after bindCells and bindMap
+void bindCellChecks(pybind11::module_& m);  // after bindCells: Cells.quality(), prove()
+void bindFill(pybind11::module_& m);        // after bindCells: solids filled with cells
+void bindRemesh(pybind11::module_& m);      // after bindCells and bindMap
 void bindCompareFem(pybind11::module_& m);
 
 struct PyCells {

@@ -50,9 +50,12 @@ PYBIND11_MODULE(_innermap, m) {
   bindHarmonic(m);
   bindLoad(m);
   bindCells(m);
+#if INNERMAP_TETRA
+  bindCellChecks(m);
   bindFill(m);
   bindRemesh(m);
   bindCompareFem(m);
+#endif
   bindCarry(m);
   bindDeformer(m);
   bindDeform(m);
@@ -60,7 +63,9 @@ PYBIND11_MODULE(_innermap, m) {
   bindVolumes(m);
   bindVolumeTextures(m);
   bindSolidTexture(m);
+#if INNERMAP_STUDY
   bindStudy(m);
+#endif
   bindJobs(m);
   for (const auto& item : py::dict(m.attr("__dict__")))
     if (py::hasattr(item.second, "__module__") && py::cast<std::string>(item.first)[0] != '_')

@@ -8,7 +8,7 @@
 #include "bind/meshes.h"
 #include "bind/volumes.h"
 #include "innermap/io/pictures.h"
-#include "jobs/solid_needs.h"
+#include "jobs/texture_need.h"
 
 namespace py = pybind11;
 using namespace py::literals;

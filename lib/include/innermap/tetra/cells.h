@@ -1,48 +1,16 @@
-// Which tetrahedron a point is in: meshes as piecewise linear maps.
+// What is known of a mesh of cells, and how it is carried.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "innermap/core/vec3.h"
 #include "innermap/fit/mapped_solid.h"
 #include "innermap/lattice/cell_mesh.h"
-#include "innermap/transfer/inverse_map.h"
 
 namespace innermap {
-
-struct CellPoint {
-  int tetrahedron = -1;  // none when the mesh has none
-  // Of its corners; sums to 1. In [0, 1] within; beyond where the point is in no tetrahedron and
-  // the one that is nearest continues linearly.
-  std::array<double, 4> barycentric{1, 0, 0, 0};
-  double distance = 0;  // from the tetrahedron, world units; 0 within
-};
-
-// Immutable; copies share their data; safe from any number of threads.
-class CellLocator {
- public:
-  // Tetrahedra without positive volume are left out. Each must be valid (see validate).
-  CellLocator(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra);
-
-  // In several, the lowest number; in none, the nearest tetrahedron, of those the lowest.
-  CellPoint locate(const Vec3& p) const;
-
- private:
-  struct Implementation;
-  std::shared_ptr<const Implementation> implementation_;
-};
-
-// With barycentric coordinates in [0, 1]: a place within, near to a point that is in none.
-CellPoint clamped(CellPoint point);
-
-// What `values`, one of each vertex, are there, linearly.
-Vec3 valueAt(const Points& values, const std::vector<Tetrahedron>& tetrahedra,
-             const CellPoint& point);
 
 // How well shaped the cells of a mesh are.
 
@@ -160,19 +128,5 @@ struct CellMap {
 // The mesh fills the target; vertices inside are found in the map's tetrahedra. Throws as above.
 CellCarry carryCellsBack(const CellMesh& mesh, const MappedSolid& mapped, const CellMap& map,
                          const CarryCellsSettings& settings = {});
-
-// A carried and repaired mesh (remesh_cells.h) with the places that its vertices came from, in
-// place of the map that it was carried by: linear on each tetrahedron, locally one-to-one as none
-// is inverted; globally where proveCells() says so of both. What goes through it agrees with the
-// mesh. Outside the mesh the nearest tetrahedron continues linearly.
-
-// carried: what remesh writes, its vertices' field "source" the places that they came from. Throws
-// DataError for a mesh without such a field of three components, with hexahedra, without
-// tetrahedra, or with a tetrahedron that is inverted, there or here (how many).
-SolidMap linearMapOf(const CellMesh& carried);
-
-// Of a mesh that remeshCells() made with the map. Throws also DataError for a mesh that lies
-// elsewhere than the map's target (their boxes differ by over a tenth of the diagonal).
-SolidMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped);
 
 }  // namespace innermap

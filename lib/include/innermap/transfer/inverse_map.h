@@ -17,6 +17,7 @@
 
 namespace innermap {
 
+struct CellMesh;
 struct MappedSolid;
 
 // What a map does at one point.
@@ -58,6 +59,20 @@ class SolidMap {
   std::shared_ptr<const ComposedMap> harmonic_;
   std::shared_ptr<const Pointwise> pointwise_;
 };
+
+// A mesh that remesh_cells.h carried and repaired, with the places that its vertices came from, in
+// place of the map that it was carried by: linear on each tetrahedron, locally one-to-one as none
+// is inverted; globally where proveCells() says so of both ends. What goes through it agrees with
+// the mesh. Outside the mesh the nearest tetrahedron continues linearly.
+//
+// carried: what remesh writes, its vertices' field "source" the places that they came from. Throws
+// DataError for a mesh without such a field of three components, with hexahedra, without
+// tetrahedra, or with a tetrahedron that is inverted, there or here (how many).
+SolidMap linearMapOf(const CellMesh& carried);
+
+// Of a mesh that remeshCells() made with the map. Throws also DataError for a mesh that lies
+// elsewhere than the map's target (their boxes differ by over a tenth of the diagonal).
+SolidMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped);
 
 struct InverseSettings {
   OutsideSettings outside;

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 
-#include "cell_report.h"
 #include "commands.h"
 #include "innermap/core/memory.h"
 #include "inputs.h"
 #include "job_cost.h"
 #include "map_report.h"
 #include "report/figures.h"
+#include "tetra/cell_report.h"
 
 namespace innermap::tool {
 namespace {

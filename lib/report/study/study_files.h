@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "innermap/study/study.h"
-#include "report/study_charts.h"
+#include "report/study/study_charts.h"
 
 namespace innermap {
 

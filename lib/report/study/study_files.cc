@@ -1,4 +1,4 @@
-#include "report/study_files.h"
+#include "report/study/study_files.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include "innermap/correspond/mesh_correspondence.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "innermap/tetra/tetrahedralize.h"
-#include "jobs/solid_needs.h"
+#include "jobs/tetra/cell_needs.h"
 #include "report/figures.h"
 
 namespace py = pybind11;

@@ -1,14 +1,11 @@
-// What cells in a solid, finite elements on it, and its texture need of memory.
+// What cells in a solid and finite elements on it need of memory.
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "innermap/io/pictures.h"
 #include "innermap/tetra/compare_fem.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "innermap/tetra/remesh_cells.h"
-#include "innermap/texture/solid_texture.h"
 #include "jobs/needs.h"
 
 namespace innermap {
@@ -23,9 +20,5 @@ MemoryNeed remeshNeed(const std::string& name, const CellMesh& cells, std::uint6
 // mapped: vertices of the solid whose map is compared; 0: known functions are.
 MemoryNeed compareFemNeed(const Solid& solid, const CompareFemSettings& settings,
                           std::size_t mapped);
-
-// image: a path, whose tiles are read; empty: the texture is in the mesh's own colours.
-MemoryNeed textureNeed(const SolidTexturePlan& plan, const std::string& image,
-                       const std::vector<UdimTile>& tiles);
 
 }  // namespace innermap

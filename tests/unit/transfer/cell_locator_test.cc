@@ -1,9 +1,10 @@
+#include "transfer/cell_locator.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "core/random.h"
-#include "innermap/tetra/cells.h"
 #include "tetra/kuhn_mesh.h"
 
 namespace innermap {

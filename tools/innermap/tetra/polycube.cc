@@ -6,9 +6,9 @@
 #include "commands.h"
 #include "innermap/mesh/mesh_file.h"
 #include "innermap/tetra/hexahedralize.h"
-#include "jobs/solid_needs.h"
-#include "polycube_report.h"
+#include "jobs/tetra/cell_needs.h"
 #include "report/report_figures.h"
+#include "tetra/polycube_report.h"
 
 namespace innermap::tool {
 namespace {

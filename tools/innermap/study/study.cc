@@ -19,7 +19,7 @@
 #include "lists.h"
 #include "map_report.h"
 #include "report/figures.h"
-#include "report/study_files.h"
+#include "report/study/study_files.h"
 #include "share.h"
 #include "signals.h"
 

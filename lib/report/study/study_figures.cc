@@ -1,5 +1,6 @@
 #include "innermap/study/study.h"
 #include "report/figures.h"
+#include "report/report_sections.h"
 
 namespace innermap {
 
@@ -23,6 +24,10 @@ Figures studyFigures(const Study& study, const StudyFindings& findings, const st
              {"cheapest_p99", second.p99, "cheapest, 99% within", "", FigureUnit::diagonals}}),
        {{"advice", findings.advice, "advice", ""},
         {"statements", statements, "statements", "the paper's, and what this says"}}});
+}
+
+std::vector<ReportSection> studySections() {
+  return {{"study", "Study", "Of the runs of a study.", studyFigures({}, {}, "", ""), {}}};
 }
 
 }  // namespace innermap

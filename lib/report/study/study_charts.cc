@@ -1,4 +1,4 @@
-#include "report/study_charts.h"
+#include "report/study/study_charts.h"
 
 #include <fmt/format.h>
 

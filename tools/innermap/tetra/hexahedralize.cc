@@ -3,14 +3,14 @@
 
 #include <fmt/format.h>
 
-#include "cell_report.h"
 #include "commands.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/mesh/mesh_file.h"
 #include "job_cost.h"
-#include "jobs/solid_needs.h"
-#include "polycube_report.h"
+#include "jobs/tetra/cell_needs.h"
 #include "report/figures.h"
+#include "tetra/cell_report.h"
+#include "tetra/polycube_report.h"
 
 namespace innermap::tool {
 namespace {

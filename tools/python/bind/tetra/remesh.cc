@@ -8,7 +8,7 @@
 #include "bind/meshes.h"
 #include "innermap/tetra/compare_fem.h"
 #include "innermap/tetra/remesh_cells.h"
-#include "jobs/solid_needs.h"
+#include "jobs/tetra/cell_needs.h"
 #include "report/figures.h"
 
 namespace py = pybind11;

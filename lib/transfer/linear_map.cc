@@ -4,9 +4,12 @@
 #include <memory>
 
 #include "innermap/core/error.h"
-#include "innermap/tetra/cells.h"
+#include "innermap/fit/mapped_solid.h"
+#include "innermap/lattice/cell_mesh.h"
+#include "innermap/transfer/inverse_map.h"
 #include "lattice/cell_signs.h"
 #include "lattice/untangle.h"
+#include "transfer/cell_locator.h"
 
 namespace innermap {
 namespace {

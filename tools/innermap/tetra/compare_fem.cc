@@ -13,7 +13,7 @@
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
-#include "jobs/solid_needs.h"
+#include "jobs/tetra/cell_needs.h"
 #include "lists.h"
 #include "report/figures.h"
 #include "report/svg_chart.h"

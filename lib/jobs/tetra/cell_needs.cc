@@ -1,6 +1,4 @@
-#include "jobs/solid_needs.h"
-
-#include <fmt/format.h>
+#include "jobs/tetra/cell_needs.h"
 
 #include <algorithm>
 
@@ -26,14 +24,6 @@ MemoryNeed compareFemNeed(const Solid& solid, const CompareFemSettings& settings
   const std::uint64_t reference = mapped > 0 ? fitMapMemory({}, mapped) : 0;
   return {"finite elements", std::max(compareFemMemory(solid, settings), reference),
           "use lower {resolutions}"};
-}
-
-MemoryNeed textureNeed(const SolidTexturePlan& plan, const std::string& image,
-                       const std::vector<UdimTile>& tiles) {
-  return {"the solid texture", plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles)),
-          fmt::format("use a {{voxel_size}} above {:.3g}, fewer {{charges}} or raise "
-                      "{{max_memory}}",
-                      1.5 * plan.voxelSize)};
 }
 
 }  // namespace innermap

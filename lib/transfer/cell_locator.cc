@@ -1,7 +1,8 @@
+#include "transfer/cell_locator.h"
+
 #include <algorithm>
 
 #include "core/bvh.h"
-#include "innermap/tetra/cells.h"
 #include "mesh/triangle_tree.h"
 
 namespace innermap {

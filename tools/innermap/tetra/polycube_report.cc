@@ -1,4 +1,4 @@
-#include "polycube_report.h"
+#include "tetra/polycube_report.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "cell_report.h"
+#include "tetra/cell_report.h"
 
 #include <fmt/format.h>
 

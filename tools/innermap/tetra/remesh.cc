@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "cell_report.h"
 #include "commands.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cell_file.h"
@@ -11,8 +10,9 @@
 #include "innermap/tetra/remesh_cells.h"
 #include "inputs.h"
 #include "job_cost.h"
-#include "jobs/solid_needs.h"
+#include "jobs/tetra/cell_needs.h"
 #include "report/figures.h"
+#include "tetra/cell_report.h"
 
 namespace innermap::tool {
 namespace {
