@@ -9,6 +9,7 @@
 #include "innermap/core/run.h"
 #include "innermap/tetra/cells.h"
 #include "tetra/detail/guide_surface.h"
+#include "transfer/cell_locator.h"
 
 namespace innermap {
 namespace {

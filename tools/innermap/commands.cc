@@ -50,29 +50,38 @@ std::vector<Command> allCommands() {
   return out;
 }
 
+namespace {
+
+// Also those of parts that this build leaves out.
+std::vector<Topic> everyTopic() {
+  return {{"maps", {"map", "correspond", "sphere", "fit", "evaluate", "verify", "study"}},
+          {"what goes through a map", {"push", "pull", "transfer-distance", "remesh"}},
+          {"animation", {"sequence", "deform", "join"}},
+          {"solids",
+           {"check", "voxelize", "texture", "harmonic", "weights", "tetrahedralize",
+            "hexahedralize", "polycube"}},
+          {"files and pictures", {"info", "slice", "export", "import", "report"}},
+          {"other", {"compare-fem"}}};
+}
+
+}  // namespace
+
 std::vector<Topic> commandTopics() {
-  std::vector<Topic> topics = {
-      {"maps", {"map", "correspond", "sphere", "fit", "evaluate", "verify", "study"}},
-      {"what goes through a map", {"push", "pull", "transfer-distance", "remesh"}},
-      {"animation", {"sequence", "deform", "join"}},
-      {"solids",
-       {"check", "voxelize", "texture", "harmonic", "weights", "tetrahedralize", "hexahedralize",
-        "polycube"}},
-      {"files and pictures", {"info", "slice", "export", "import", "report"}},
-      {"other", {}}};
-  const std::vector<Command> all = allCommands();
-  const auto isLeftOut = [&](const std::string& name) {
-    return std::none_of(all.begin(), all.end(), [&](const Command& c) { return c.name() == name; });
-  };
-  for (Topic& topic : topics)
-    topic.commands.erase(std::remove_if(topic.commands.begin(), topic.commands.end(), isLeftOut),
-                         topic.commands.end());
-  for (const Command& c : all) {
-    const auto has = [&](const Topic& topic) {
-      return std::count(topic.commands.begin(), topic.commands.end(), c.name()) > 0;
-    };
-    if (std::none_of(topics.begin(), topics.end(), has)) topics.back().commands.push_back(c.name());
+  std::vector<std::string> names;
+  for (const Command& c : allCommands()) names.push_back(c.name());
+  std::vector<Topic> topics = everyTopic();
+  for (Topic& topic : topics) {
+    std::vector<std::string> there;
+    for (const std::string& name : topic.commands) {
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) continue;
+      there.push_back(name);
+      names.erase(found);
+    }
+    topic.commands = there;
   }
+  std::vector<std::string>& others = topics.back().commands;
+  others.insert(others.end(), names.begin(), names.end());
   return topics;
 }
 
@@ -84,6 +93,11 @@ Command findCommand(const std::string& name) {
       if (spelling == name) return std::move(c);
     names.push_back(c.name());
   }
+  for (const Topic& topic : everyTopic())
+    if (std::count(topic.commands.begin(), topic.commands.end(), name) > 0)
+      throw UsageError("this build leaves out '" + name +
+                       "'; build with INNERMAP_TETRA and "
+                       "INNERMAP_STUDY on");
   const bool option = name.compare(0, 1, "-") == 0;
   throw UsageError(std::string("unknown ") + (option ? "option" : "command") + " '" + name + "'" +
                    didYouMean(name, names) + (option ? "; options stand after the command" : "") +
