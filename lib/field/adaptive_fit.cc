@@ -31,9 +31,11 @@ constexpr double kMargin = 0.97;
 constexpr double kAccuracy = 1e-3;      // of the solution, of the tolerance
 constexpr double kMarkAccuracy = 1e-2;  // of the errors that are marked, of the tolerance
 constexpr double kLeastGain = 0.97;     // of the score in the rounds of patience
-constexpr double kForNothing = 4;       // times the charges that did as well
-constexpr double kMostRounds = 20;      // that are looked ahead
-constexpr std::size_t kLookBack = 2;    // rounds, for how the next will go
+// Of the most charges: a round for the few that are left costs as much as the one before.
+constexpr double kFull = 0.97;
+constexpr double kForNothing = 4;     // times the charges that did as well
+constexpr double kMostRounds = 20;    // that are looked ahead
+constexpr std::size_t kLookBack = 2;  // rounds, for how the next will go
 constexpr double kOfOutlierRounds = 0.5;
 constexpr double kNextRound = 1.5;  // seconds, of the one before; for a deadline
 
@@ -213,7 +215,7 @@ bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
 bool AdaptiveFitting::refine(const std::vector<Points>& marks) {
   std::vector<Points> wanted = marks;
   for (int tries = 0; tries < kMostLevels; ++tries) {
-    if (sourceCount() >= settings_.maxSources) {
+    if (static_cast<double>(sourceCount()) >= kFull * static_cast<double>(settings_.maxSources)) {
       end_ = AdaptiveEnd::maxSources;
       return false;
     }

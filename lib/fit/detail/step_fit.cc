@@ -68,9 +68,9 @@ constexpr double kWorkPower = 2.4;
 constexpr int kOutlierRounds = 3, kPatience = 1;
 constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // Charges of one step, at most, at the tolerance of surfaces that were laid on one another; more in
-// proportion at a smaller one. Steps that can be met take 4,000 to 13,000; jumps across slits take
-// all there are.
-constexpr double kStepSources = 15000;
+// proportion at a smaller one. Steps that can be met take 4,000 to 19,000; jumps across slits take
+// all there are. With 15,000 cheburashka's way to fandisk takes one step more, and as long.
+constexpr double kStepSources = 24000;
 // Of the target's diagonal: sums, and where points inside go (a share of the tolerance where that
 // is less); the mesh about an intermediate shape.
 constexpr double kSumShare = 2e-3;

@@ -50,8 +50,7 @@ Axes steps(const Mesh& mesh, int triangle, double length) {
 
 SurfaceTexture::SurfaceTexture(const Solid& solid, const Mesh& mesh, TextureKind kind,
                                TextureLookup texture, std::optional<UvGroups> groups)
-    : solid_(solid),
-      mesh_(mesh),
+    : mesh_(mesh),
       kind_(kind),
       texture_(std::move(texture)),
       groups_(std::move(groups)),
@@ -60,8 +59,7 @@ SurfaceTexture::SurfaceTexture(const Solid& solid, const Mesh& mesh, TextureKind
 }
 
 SurfaceTexture::SurfaceTexture(const Solid& solid, const Mesh& mesh, const Decoding& decode)
-    : solid_(solid),
-      mesh_(mesh),
+    : mesh_(mesh),
       kind_(TextureKind::colours),
       lookup_(solid, mesh, std::vector<char>(mesh.triangles.size(), 1), "vertex colours") {
   for (const auto& c : mesh.colours) {

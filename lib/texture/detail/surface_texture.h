@@ -51,7 +51,6 @@ class SurfaceTexture {
   Vec3 colourAt(const InputPoint& p, double spacing) const;
   void findCentres();
 
-  const Solid& solid_;
   const Mesh& mesh_;
   TextureKind kind_;
   TextureLookup texture_;

@@ -21,7 +21,7 @@ constexpr std::size_t kCopies = 40;
 class Sheets {
  public:
   Sheets(const HalfEdges& edges, const HomologyBasis& basis, const IntegerMatrix& bounding)
-      : basis_(basis), start_(static_cast<std::size_t>(edges.size()) + 1, 0) {
+      : start_(static_cast<std::size_t>(edges.size()) + 1, 0) {
     std::vector<std::array<int, 3>> uses;  // half-edge, form, value
     for (std::size_t i = 0; i < basis.size(); ++i) {
       for (const int h : basis.forms[i]) {
@@ -78,7 +78,6 @@ class Sheets {
     return found->second;
   }
 
-  const HomologyBasis& basis_;
   std::vector<std::size_t> start_;  // of each half-edge in uses_
   std::vector<std::pair<int, int>> uses_;
   IntegerMatrix crossed_, classes_;
