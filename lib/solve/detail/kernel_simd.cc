@@ -22,7 +22,7 @@ using D = hn::CappedTag<double, kRows / 4>;
 #endif
 using V = hn::Vec<D>;
 
-// At least 12 good bits of 1/sqrt(x).
+// Good bits of 1/sqrt(x): 14 with AVX-512, 11 with other x86, 8 with Neon.
 HWY_INLINE V EstimateInverseSqrt(D d, V x) {
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
   (void)d;
@@ -35,16 +35,19 @@ HWY_INLINE V EstimateInverseSqrt(D d, V x) {
 #endif
 }
 
-// 1/sqrt(x) by two Newton steps, error about one unit of rounding, or by one where that is enough;
-// 0 where x is 0.
+// 1/sqrt(x) by two Newton steps, error about one unit of rounding, or by one, error 1e-8, where
+// that is enough; 0 where x is 0. After an estimate of 11 bits two such steps leave up to 6e-14, so
+// the last one is of the third order.
 template <Rounding R>
 HWY_INLINE V InverseSqrt(D d, V x) {
   constexpr int kSteps = (HWY_TARGET == HWY_NEON ? 2 : 1) * (R == Rounding::full ? 2 : 1);
+  constexpr bool kThirdOrder = HWY_ARCH_X86 && HWY_TARGET > HWY_AVX3 && HWY_TARGET != HWY_SCALAR;
   const V half = hn::Set(d, 0.5);
   const V halfX = hn::Mul(half, x);
   V y = EstimateInverseSqrt(d, x);
   for (int step = 0; step < kSteps; ++step) {
-    const V t = hn::NegMulAdd(hn::Mul(halfX, y), y, half);
+    V t = hn::NegMulAdd(hn::Mul(halfX, y), y, half);
+    if (kThirdOrder && step + 1 == kSteps) t = hn::MulAdd(hn::Mul(t, t), hn::Set(d, 1.5), t);
     y = hn::MulAdd(y, t, y);
   }
   return hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), y);
