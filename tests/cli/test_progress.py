@@ -131,7 +131,7 @@ def test_more_voxels_are_said_to_take_longer():
 
 def test_each_stage_of_a_plan_has_a_weight():
     folder = cli.ROOT / "tools" / "innermap"
-    text = "".join(path.read_text() for path in sorted(folder.glob("*.cc")))
+    text = "".join(path.read_text() for path in sorted(folder.rglob("*.cc")))
     named = set()
     for call in re.findall(r"(?:stageOf\(|stage :\s+\{)([^;]*?)(?:, \w|\})", text):
         named.update(re.findall(r'"([^"]+)"', call))
@@ -139,7 +139,7 @@ def test_each_stage_of_a_plan_has_a_weight():
     assert len(named) > 50, named
     assert named == weighed, named ^ weighed
     # And something reports it, or a run would never come to it.
-    sources = [*(cli.ROOT / "lib").rglob("*.[ch]*"), *folder.glob("*.cc")]
+    sources = [*(cli.ROOT / "lib").rglob("*.[ch]*"), *folder.rglob("*.cc")]
     told = "".join(line for path in sources for line in path.read_text().splitlines()
                    if "stageOf(" not in line)
     assert [name for name in sorted(named) if f'"{name.split(":")[0]}"' not in told] == []
