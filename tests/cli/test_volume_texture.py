@@ -83,8 +83,9 @@ while image.seek_subimage(parts, 0):
 assert parts == spec.getattribute("volumeSliceCount"), parts
 """, "p.exr")
     if shutil.which("exrinfo"):
+        # Its exit code says nothing: now and then it is not 0 for a file that it has read.
         said = subprocess.run(["exrinfo", "-v", "a.exr"], capture_output=True, text=True,
-                              check=True).stdout
+                              check=False).stdout
         for word in ("indexToWorld", "textureToWorld", "volumeWorldMin", "density.active"):
             assert word in said, word
     if shutil.which("oiiotool"):
