@@ -69,8 +69,9 @@ constexpr int kOutlierRounds = 3, kPatience = 1;
 constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // Charges of one step, at most, at the tolerance of surfaces that were laid on one another; more in
 // proportion at a smaller one. Steps that can be met take 4,000 to 19,000; jumps across slits take
-// all there are. With 15,000 cheburashka's way to fandisk takes one step more, and as long.
-constexpr double kStepSources = 24000;
+// all there are. With 15,000 cheburashka's way to fandisk takes one step more, and as long. Through
+// smoothed shapes only the last step wants more, and is no better for it.
+constexpr double kStepSources = 24000, kSmoothedSources = 15000;
 // Of the target's diagonal: sums, and where points inside go (a share of the tolerance where that
 // is less); the mesh about an intermediate shape.
 constexpr double kSumShare = 2e-3;
@@ -197,7 +198,8 @@ class StepFitter {
   }
 
   std::size_t mostSources() const {
-    const double most = kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
+    const double most = (smoothed_ ? kSmoothedSources : kStepSources) *
+                        std::max(1.0, kLaidOnTolerance / settings_.tolerance);
     return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
   }
 
