@@ -5,10 +5,9 @@ the library (lib/ROOM/), or the room's own (a detail/ in it).
 
 Found are: includes of rooms that are not below, of a header that is not there, of another room's own; public
 headers that include private ones, or are more than MOST_PUBLIC, or that no test of the room includes;
-programs that include private headers of other rooms than OPEN; includes of parts that a build may
-leave out (COMPONENTS); files that include themselves by way of
-others; two headers that define types of one name (their files would link to either's code); a solve/ that
-knows of meshes or grids.
+programs that include private headers of other rooms than OPEN; includes of parts that a build may leave out
+(COMPONENTS); files that include themselves by way of others; two headers that define types of one name (their
+files would link to either's code); a solve/ that knows of meshes or grids.
 
     layering.py [ROOT]      exit code 1 and one line for each finding
 """
