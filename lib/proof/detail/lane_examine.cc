@@ -85,7 +85,7 @@ HWY_INLINE Matrix3 Inverse(const Matrix3& a, V determinant) {
 }
 
 HWY_INLINE V CoefficientOf(const double* coefficients, int n, int m, int channel, int part) {
-  return hn::Load(D(), coefficients + (6 * termOf(n, m) + 2 * channel + part) * kLanes);
+  return hn::Load(D(), coefficients + (6 * termOf(n, m) + 2 * channel + part) * Side());
 }
 
 // The gradients of the channels at the centre, one a row.
@@ -169,9 +169,9 @@ HWY_INLINE V DistanceFromUnit(const Matrix3& b, const Matrix3& j) {
   return hn::Sqrt(sum);
 }
 
-// Of terms whose absolute values sum to 1: what may come of rounding them, of moving their sum
-// through 26 levels, each time by sums of 100 complex products; 9,000 units of rounding. For the
-// sums over charges see FieldTree::rounding().
+// Of terms whose absolute values sum to 1: what may come of rounding them and of moving their sum
+// through 26 levels, 9,000 units of rounding; derived in docs/method.md, "Rounding". For the sums
+// over charges see FieldTree::rounding().
 constexpr double kRounding = 1e-12;
 constexpr double kRelative = 1e-14;  // of a few operations
 
@@ -207,7 +207,7 @@ HWY_INLINE void Enclose(const double* coefficients, const Matrix3& j, V rest, co
 HWY_INLINE void ExamineLanes(const double* all, const LaneRemainders& remainders,
                              const LaneSets& sets, std::size_t lane, LaneFindings& out) {
   const D d;
-  const double* const coefficients = all + lane;
+  const double* const coefficients = all + lane * kCoefficients;
   const Matrix3 j = Derivative(coefficients);
   const V determinant = Determinant(j);
   const Matrix3 b = Inverse(j, determinant);
@@ -243,7 +243,7 @@ HWY_INLINE void ExamineLanes(const double* all, const LaneRemainders& remainders
 
 void Examine(const double* HWY_RESTRICT coefficients, const LaneRemainders& remainders,
              const LaneSets& sets, LaneFindings& out) {
-  for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(D()))
+  for (std::size_t lane = 0; lane < kLanes; lane += Side())
     ExamineLanes(coefficients, remainders, sets, lane, out);
 }
 

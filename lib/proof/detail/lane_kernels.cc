@@ -1,6 +1,7 @@
 #include "proof/detail/lane_kernels.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -71,26 +72,6 @@ void OrderPlaces(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RE
   }
 }
 
-// Writes those of the list that have that place; behind them up to kListLanes numbers more.
-std::size_t ListOf(const std::uint32_t* HWY_RESTRICT list, const std::int32_t* HWY_RESTRICT places,
-                   std::size_t count, std::int32_t place, std::uint32_t* HWY_RESTRICT out) {
-#if HWY_TARGET == HWY_SCALAR
-  const hn::ScalableTag<std::int32_t> d;
-#else
-  const hn::CappedTag<std::int32_t, kListLanes> d;
-#endif
-  const hn::RebindToUnsigned<decltype(d)> whole;
-  const auto wanted = hn::Set(d, place);
-  std::size_t found = 0, i = 0;
-  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
-    const auto takes = hn::RebindMask(whole, hn::Eq(hn::LoadU(d, places + i), wanted));
-    found += hn::CompressStore(hn::LoadU(whole, list + i), takes, whole, out + found);
-  }
-  for (; i < count; ++i)
-    if (places[i] == place) out[found++] = list[i];
-  return found;
-}
-
 // A charge, seen from the places that it is expanded about. Its harmonics are
 // I_nm(q) = (n - m)! P_n^m(cos theta) e^(i m phi) / r^(n+1): 1/|x - q| is the sum of
 // I_nm(q) conj(R_nm(x)).
@@ -107,20 +88,9 @@ HWY_INLINE Arm ArmTo(V x, V y, V z, V w0, V w1, V w2) {
           {w0, w1, w2}};
 }
 
-HWY_INLINE Complex NextDegree(const Arm& arm, V up, V down, const Complex& now,
-                              const Complex& before) {
-  const V a = up * arm.z, b = down * arm.inverse;
-  return {hn::NegMulAdd(b, before.re, a * now.re), hn::NegMulAdd(b, before.im, a * now.im)};
-}
-
 HWY_INLINE Complex NextDiagonal(const Arm& arm, V factor, const Complex& diagonal) {
   return {factor * hn::NegMulAdd(arm.y, diagonal.im, arm.x * diagonal.re),
           factor * hn::MulAdd(arm.y, diagonal.re, arm.x * diagonal.im)};
-}
-
-HWY_INLINE void AddProducts(V a, V p, V b, V q, double* HWY_RESTRICT out) {
-  const D d;
-  hn::Store(hn::MulAdd(b, q, hn::MulAdd(a, p, hn::Load(d, out))), d, out);
 }
 
 // Factors of the recurrences.
@@ -136,29 +106,42 @@ constexpr Factors kFactors = [] {
   return out;
 }();
 
-// Two charges at once: the sums are read and written once for both.
-HWY_NOINLINE void AddPair(int order, Arm a, Arm b, double* HWY_RESTRICT coefficients) {
+// Adds the expansions of some charges at once, so that sums are read and written once for all of
+// them. I_nm / I_mm is real: a recurrence of real numbers for each order m, then one product for
+// each sum and charge. Overwrites the diagonals of the arms.
+template <std::size_t kCharges>
+HWY_NOINLINE void AddArms(int order, Arm* HWY_RESTRICT arms, double* HWY_RESTRICT coefficients) {
+  V up[kOrder + 1][kCharges], amplitude[kOrder + 2][kCharges];
+  for (int n = 0; n < order; ++n)
+    for (std::size_t c = 0; c < kCharges; ++c) up[n][c] = Number(kFactors.up[n]) * arms[c].z;
   for (int m = 0; m <= order; ++m) {
-    const Complex none{hn::Zero(D()), hn::Zero(D())};
-    Complex beforeA = none, beforeB = none, nowA = a.diagonal, nowB = b.diagonal;
-    for (int n = m;; ++n) {
-      double* out = coefficients + 6 * termOf(n, m) * kLanes;
-      for (int k = 0; k < 3; ++k, out += 2 * kLanes) {
-        AddProducts(a.weight[k], nowA.re, b.weight[k], nowB.re, out);
-        if (m > 0) AddProducts(a.weight[k], nowA.im, b.weight[k], nowB.im, out + kLanes);
-      }
-      if (n == order) break;
-      const V up = Number(kFactors.up[n]), down = Number(kFactors.down[termOf(n, m)]);
-      const Complex nextA = NextDegree(a, up, down, nowA, beforeA);
-      const Complex nextB = NextDegree(b, up, down, nowB, beforeB);
-      beforeA = nowA;
-      beforeB = nowB;
-      nowA = nextA;
-      nowB = nextB;
+    for (std::size_t c = 0; c < kCharges; ++c) {
+      amplitude[m][c] = Number(1);
+      if (m < order) amplitude[m + 1][c] = up[m][c];
     }
-    const V factor = Number(kFactors.up[m]);
-    a.diagonal = NextDiagonal(a, factor, a.diagonal);
-    b.diagonal = NextDiagonal(b, factor, b.diagonal);
+    for (int n = m + 1; n < order; ++n)
+      for (std::size_t c = 0; c < kCharges; ++c) {
+        const V down = Number(kFactors.down[termOf(n, m)]) * arms[c].inverse;
+        amplitude[n + 1][c] = hn::MulSub(up[n][c], amplitude[n][c], down * amplitude[n - 1][c]);
+      }
+    for (int part = 0; part < (m == 0 ? 1 : 2); ++part) {
+      V weight[kCharges][3];
+      for (std::size_t c = 0; c < kCharges; ++c)
+        for (int k = 0; k < 3; ++k)
+          weight[c][k] =
+              arms[c].weight[k] * (part == 0 ? arms[c].diagonal.re : arms[c].diagonal.im);
+      for (int n = m; n <= order; ++n) {
+        double* out = coefficients + (6 * termOf(n, m) + part) * Side();
+        for (int k = 0; k < 3; ++k, out += 2 * Side()) {
+          V sum = hn::Load(D(), out);
+          for (std::size_t c = 0; c < kCharges; ++c)
+            sum = hn::MulAdd(weight[c][k], amplitude[n][c], sum);
+          hn::Store(sum, D(), out);
+        }
+      }
+    }
+    for (std::size_t c = 0; c < kCharges; ++c)
+      arms[c].diagonal = NextDiagonal(arms[c], Number(kFactors.up[m]), arms[c].diagonal);
   }
 }
 
@@ -198,25 +181,30 @@ HWY_INLINE Arm ArmOf(const double* HWY_RESTRICT q, const LaneSets& sets, std::si
                Number(q[5]));
 }
 
-// `other` may be none.
-HWY_INLINE void AddTwo(int order, const double* HWY_RESTRICT charge,
-                       const double* HWY_RESTRICT other, const LaneSets& sets, std::size_t lane,
-                       double* HWY_RESTRICT coefficients, LaneRemainders& remainders) {
+constexpr std::size_t kAtOnce = 4;
+
+// Adds kAtOnce charges from `begin` on, or what is left of them.
+HWY_INLINE void AddSome(const double* HWY_RESTRICT charges, const OrderedCharges& some,
+                        std::size_t begin, const LaneSets& sets, std::size_t lane,
+                        double* HWY_RESTRICT coefficients, LaneRemainders& remainders) {
   const D d;
+  const int order = OrderAt(some, begin);
   const V radius = hn::Load(d, sets.radius + lane);
   Rest sum{hn::Load(d, remainders.gradient + lane), hn::Load(d, remainders.value + lane),
            hn::Load(d, remainders.gradientMagnitude + lane),
            hn::Load(d, remainders.valueMagnitude + lane)};
-  const Arm a = ArmOf(charge, sets, lane);
-  AddRest(order, a, Number(charge[6]), radius, sum);
-  Arm b = a;
-  if (other) {
-    b = ArmOf(other, sets, lane);
-    AddRest(order, b, Number(other[6]), radius, sum);
-  } else {
-    for (V& w : b.weight) w = hn::Zero(d);
+  Arm arms[kAtOnce];
+  for (std::size_t c = 0; c < kAtOnce; ++c) {
+    if (begin + c < some.count()) {
+      const double* const q = charges + kChargeStride * some.list[begin + c];
+      arms[c] = ArmOf(q, sets, lane);
+      AddRest(order, arms[c], Number(q[6]), radius, sum);
+    } else {
+      arms[c] = arms[0];
+      for (V& w : arms[c].weight) w = hn::Zero(d);
+    }
   }
-  AddPair(order, a, b, coefficients + lane);
+  AddArms<kAtOnce>(order, arms, coefficients + lane * kCoefficients);
   hn::Store(sum.gradient, d, remainders.gradient + lane);
   hn::Store(sum.value, d, remainders.value + lane);
   hn::Store(sum.gradientMagnitude, d, remainders.gradientMagnitude + lane);
@@ -226,13 +214,9 @@ HWY_INLINE void AddTwo(int order, const double* HWY_RESTRICT charge,
 void AddCharges(const double* HWY_RESTRICT charges, const OrderedCharges& some,
                 const LaneSets& sets, double* HWY_RESTRICT coefficients,
                 LaneRemainders& remainders) {
-  for (std::size_t i = 0; i < some.count(); i += 2) {
-    const double* const charge = charges + kChargeStride * some.list[i];
-    const double* const other =
-        i + 1 < some.count() ? charges + kChargeStride * some.list[i + 1] : nullptr;
-    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(D()))
-      AddTwo(OrderAt(some, i), charge, other, sets, lane, coefficients, remainders);
-  }
+  for (std::size_t lane = 0; lane < kLanes; lane += Side())
+    for (std::size_t i = 0; i < some.count(); i += kAtOnce)
+      AddSome(charges, some, i, sets, lane, coefficients, remainders);
 }
 
 // Charges, one a lane, about the origin, with the weights' lengths.
@@ -271,19 +255,19 @@ void AddAboutOne(const double* HWY_RESTRICT charges, const OrderedCharges& some,
   const V zero = hn::Zero(d), within = Number(radius);
   alignas(64) double sums[kCoefficients * kLanes];
   const std::size_t used = 6 * termOf(OrderAt(some, 0) + 1, 0);
-  for (std::size_t c = 0; c < used; ++c) hn::Store(zero, d, sums + c * kLanes);
+  for (std::size_t c = 0; c < used; ++c) hn::Store(zero, d, sums + c * Side());
   Rest rest{zero, zero, zero, zero};
   for (std::size_t i = 0; i < some.count(); i += 2 * hn::Lanes(d)) {
     const int order = OrderAt(some, i);
     const ChargeLanes first = Gather(charges, some, i, expansion.center);
     const ChargeLanes second = Gather(charges, some, i + hn::Lanes(d), expansion.center);
-    const Arm a = ArmOf(first), b = ArmOf(second);
-    AddRest(order, a, first.length, within, rest);
-    AddRest(order, b, second.length, within, rest);
-    AddPair(order, a, b, sums);
+    Arm arms[2] = {ArmOf(first), ArmOf(second)};
+    AddRest(order, arms[0], first.length, within, rest);
+    AddRest(order, arms[1], second.length, within, rest);
+    AddArms<2>(order, arms, sums);
   }
   for (std::size_t c = 0; c < used; ++c)
-    expansion.coefficients[c] += Total(hn::Load(d, sums + c * kLanes));
+    expansion.coefficients[c] += Total(hn::Load(d, sums + c * Side()));
   expansion.remainder.gradient += Total(rest.gradient);
   expansion.remainder.value += Total(rest.value);
   expansion.remainder.gradientMagnitude += Total(rest.gradientMagnitude);
@@ -300,7 +284,6 @@ namespace innermap::proof {
 
 HWY_EXPORT(Measure);
 HWY_EXPORT(OrderPlaces);
-HWY_EXPORT(ListOf);
 HWY_EXPORT(AddCharges);
 HWY_EXPORT(AddAboutOne);
 
@@ -317,17 +300,14 @@ void orderPlaces(const double* charges, const std::uint32_t* list, std::size_t c
 
 void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
              OrderedCharges& out) {
-  // A list at a time: each may write a little beyond what it finds.
-  out.list.resize(places.size() + kListLanes);
-  std::size_t end = 0;
-  const auto add = [&](std::size_t place) {
-    end += HWY_DYNAMIC_DISPATCH(ListOf)(charges, places.data(), places.size(),
-                                        static_cast<std::int32_t>(place), out.list.data() + end);
-    return end;
-  };
-  for (std::size_t i = 0; i < kOrders.size(); ++i) out.ends[i] = add(i);
-  add(kNotExpanded);
-  out.list.resize(end);
+  std::array<std::size_t, kOrders.size() + 1> next{};
+  for (std::size_t i = 0; i < kOrders.size(); ++i) {
+    const auto of = std::count(places.begin(), places.end(), static_cast<std::int32_t>(i));
+    next[i + 1] = out.ends[i] = next[i] + static_cast<std::size_t>(of);
+  }
+  out.list.resize(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    out.list[next[static_cast<std::size_t>(places[i])]++] = charges[i];
 }
 
 void addCharges(const double* charges, const OrderedCharges& some, const LaneSets& sets,

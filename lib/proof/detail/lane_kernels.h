@@ -69,7 +69,6 @@ struct OrderedCharges {
 };
 
 // By the place in kOrders of each; kNotExpanded is left out.
-constexpr std::size_t kListLanes = 16;  // charges of a list that are looked at together, at most
 void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
              OrderedCharges& out);
 
@@ -78,8 +77,8 @@ void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& plac
 std::uint8_t measure(const double* charges, const std::uint32_t* list, std::size_t count,
                      const LaneSets& sets, double* nearest);
 
-// Adds the expansions of charges about the eight centres, kCoefficients x kLanes, and what they
-// add to the remainders; that is infinite where nothing is known.
+// Adds the expansions of charges about the eight centres, kCoefficients x kLanes in the order of
+// lanes-inl.h, and what they add to the remainders; that is infinite where nothing is known.
 void addCharges(const double* charges, const OrderedCharges& some, const LaneSets& sets,
                 double* coefficients, LaneRemainders& remainders);
 

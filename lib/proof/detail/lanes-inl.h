@@ -26,6 +26,10 @@ struct Complex {
   V re, im;
 };
 
+// Lanes of a vector. The coefficients of so many lanes stand together, all of them before those of
+// the next lanes: half the lanes' sums stay in the first cache where all of them would not.
+HWY_INLINE std::size_t Side() { return hn::Lanes(D()); }
+
 HWY_INLINE V Number(double x) { return hn::Set(D(), x); }
 
 }  // namespace HWY_NAMESPACE

@@ -4,9 +4,8 @@
 //   f(c + x) = sum_{n <= kOrder} sum_{|m| <= n} L_nm conj(R_nm(x)) + what is cut off + near charges
 //   R_nm(x) = r^n P_n^m(cos theta) e^(i m phi) / (n + m)!,   L_n(-m) = (-1)^m conj(L_nm)
 //
-// (Hobson, "The Theory of Spherical and Ellipsoidal Harmonics", 1931; moves as in Epton and
-// Dembart, "Multipole Translation Theory for the Three-Dimensional Laplace and Helmholtz
-// Equations", SIAM J. Sci. Comput. 1995; P_n^m without the sign (-1)^m.)
+// (Hobson, "The Theory of Spherical and Ellipsoidal Harmonics", 1931; P_n^m without the sign
+// (-1)^m. Moves: lane_moves.cc.)
 #pragma once
 
 #include <array>
