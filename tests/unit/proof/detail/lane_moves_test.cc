@@ -3,7 +3,7 @@
 #include <cmath>
 #include <complex>
 
-#include "innermap/core/random.h"
+#include "core/random.h"
 #include "proof/detail/lane_kernels.h"
 
 namespace innermap::proof {
@@ -89,7 +89,8 @@ TEST(LaneMoves, OfEightAreThoseOfOne) {
         gradient[k] = {one[6 * termOf(1, 1) + 2 * k], one[6 * termOf(1, 1) + 2 * k + 1],
                        one[6 * termOf(1, 0) + 2 * k]};
       }
-      const double size = norm(gradient[0]) * norm(gradient[1]) * norm(gradient[2]);
+      double size = 1;
+      for (const auto& row : gradient) size *= norm(Vec3{row[0], row[1], row[2]});
       EXPECT_NEAR(found.determinant[lane], determinant(gradient), 1e-11 * size);
     }
   }
