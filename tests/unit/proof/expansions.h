@@ -28,6 +28,20 @@ inline ValueAndGradient evaluate(const proof::StepExpansion& from, const Vec3& p
   return out;
 }
 
+// What coefficients for eight sets say at the centre of one of them.
+inline ValueAndGradient inLane(const double* coefficients, proof::LaneSets sets, std::size_t lane) {
+  for (int i = 0; i < 3; ++i)
+    for (int a = 0; a < 3; ++a) std::fill_n(sets.vertex[i][a], proof::kLanes, i == a ? 1.0 : 0.0);
+  proof::LaneFindings found{};
+  proof::examine(coefficients, {}, sets, found);
+  ValueAndGradient out;
+  for (int k = 0; k < 3; ++k) {
+    out.value[k] = found.image.center[k][lane];
+    for (int i = 0; i < 3; ++i) out.gradient[k][i] = found.image.vertex[i][k][lane];
+  }
+  return out;
+}
+
 inline double largestDifference(const Mat3& a, const Mat3& b) {
   double out = 0;
   for (int r = 0; r < 3; ++r)
