@@ -130,7 +130,7 @@ HWY_INLINE void TurnDegree(Tag d, int n, Part<Vector, kChannels>* parts) {
 
 template <class Tag, class Vector, std::size_t kChannels>
 HWY_INLINE void Move(Tag d, const Vector (&shift)[3], int order, Part<Vector, kChannels>* parts) {
-  for (const int axis : {2, 0, 1}) {
+  for (const int axis : {2, 0, 1}) {  // those that turns bring to z, one after the other
     MoveAlongZ(d, shift[axis], order, parts);
     for (int n = 1; n <= order; ++n) TurnDegree(d, n, parts);
   }
