@@ -178,7 +178,8 @@ Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings) {
   return result;
 }
 
-double moveToDistance(const Solid& solid, double distance, Vec3& p) {
+double moveToDistance(const Solid& solid, double distance, Vec3& p,
+                      const std::function<bool(const Vec3&)>& worthwhile) {
   Vec3 best = p;
   double bestError = std::numeric_limits<double>::infinity();
   for (int step = 0; step < 8; ++step) {
@@ -192,6 +193,7 @@ double moveToDistance(const Solid& solid, double distance, Vec3& p) {
     }
     if (error <= 1e-9 * distance || !(c.distance > 0)) break;
     p = c.position + (distance / c.distance) * (p - c.position);
+    if (worthwhile && !worthwhile(p)) return std::numeric_limits<double>::infinity();
   }
   p = best;
   return bestError;

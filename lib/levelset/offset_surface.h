@@ -1,6 +1,8 @@
 // The surface at a given distance outside a solid.
 #pragma once
 
+#include <functional>
+
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -21,7 +23,9 @@ Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings);
 
 // Moves p away from or towards the closest points of solid.surface() until its distance is
 // `distance` (world units); returns by how much it still differs (in a crease between parts there
-// may be no such point nearby).
-double moveToDistance(const Solid& solid, double distance, Vec3& p);
+// may be no such point nearby). Gives up, and returns infinity, once p has moved to where
+// worthwhile(p) is false.
+double moveToDistance(const Solid& solid, double distance, Vec3& p,
+                      const std::function<bool(const Vec3&)>& worthwhile = {});
 
 }  // namespace innermap

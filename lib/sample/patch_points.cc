@@ -13,68 +13,26 @@
 #include "core/require_number.h"
 #include "innermap/core/run.h"
 #include "levelset/offset_surface.h"
+#include "sample/detail/surface_patch.h"
 
 namespace innermap {
 namespace {
 
 constexpr double kClearance = 0.97;   // of the distance
 constexpr double kAlongNormal = 0.6;  // share of candidates; the others reach over convex edges
-constexpr double kFewTaken = 0.02;    // of a round's candidates: it is full
-constexpr int kMostRounds = 24;
-constexpr double kCandidates = 4;                     // a round, for each point that has room
-constexpr std::size_t kParts = 16, kLeastPart = 128;  // of a round
+// Candidates are thrown in parts, so many for each point that has room in an empty patch, until
+// hardly any of so many parts is taken: of what there is, or of the candidates.
+constexpr int kParts = 4, kMostParts = 400;
+constexpr double kFewMore = 0.05, kFewTaken = 0.005;
+constexpr std::size_t kLeastPart = 128;
+constexpr double kLargestPart = 1e6;
+// Of the reach: narrower parts of triangles are not told apart.
+constexpr double kFinest = 1.0 / 32;
 
 struct Candidate {
   SurfacePoint address;
   Vec3 position;
   bool good = false;
-};
-
-// The triangles that come within reach of a mark, for random samples by area.
-class Patch {
- public:
-  Patch(const Solid& solid, const Points& marks, double reach)
-      : surface_(solid.surface()), marks_(marks, 2 * reach), reach_(reach), all_(marks.empty()) {
-    std::vector<char> near(surface_.triangles.size(), 1);
-    if (!all_) findNear(near);
-    double sum = 0;
-    for (std::size_t t = 0; t < near.size(); ++t) {
-      const double area = near[t] ? norm(areaVector(surface_, static_cast<int>(t))) : 0;
-      if (!(area > 0)) continue;
-      triangles_.push_back(static_cast<int>(t));
-      cumulative_.push_back(sum += area);
-    }
-  }
-
-  double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
-
-  SurfacePoint sample(double u, double v, double w) const {
-    const auto at = std::upper_bound(cumulative_.begin(), cumulative_.end(), u * area());
-    const std::size_t i =
-        std::min(static_cast<std::size_t>(at - cumulative_.begin()), triangles_.size() - 1);
-    const double r = std::sqrt(v);
-    return {triangles_[i], {1 - r, r * (1 - w), r * w}};
-  }
-
-  bool holds(const Vec3& p) const { return all_ || marks_.anyNearer(p, reach_); }
-
- private:
-  void findNear(std::vector<char>& near) const {
-    parallelBlocks(near.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        Box3 box;
-        for (const int v : surface_.triangles[t]) box.add(surface_.vertices[v]);
-        near[t] = marks_.anyNearer(box.center(), reach_ + 0.5 * box.diagonal());
-      }
-    });
-  }
-
-  const Mesh& surface_;
-  PointGrid marks_;
-  double reach_;
-  bool all_;
-  std::vector<int> triangles_;
-  std::vector<double> cumulative_;
 };
 
 // Whether points at least `clearance` (world units) from a solid's surface are inside, asked once a
@@ -117,43 +75,54 @@ void check(const PatchSettings& settings) {
   requireNumber("reach", settings.reach, above(0));
 }
 
-// Throws darts: `propose(i)` gives candidate i (on any thread), of which those stay that are good
-// and have room.
-std::vector<Candidate> throwDarts(
-    double area, double spacing, const Points& existing,
-    const std::function<Candidate(std::size_t, const PointGrid&)>& propose,
-    const PatchSettings& settings) {
+SurfacePatch patchOf(const Solid& solid, const Points& marks, const PatchSettings& settings) {
+  const double reach = settings.reach * solid.diagonal(),
+               spacing = settings.spacing * solid.diagonal();
+  return {solid.surface(), marks, reach, std::max(2 * spacing, kFinest * reach)};
+}
+
+// Candidate i, at a share of the patch's area; on any thread.
+using Propose = std::function<Candidate(std::size_t i, double share, const PointGrid& taken)>;
+
+// Throws darts, of which those stay that are good and have room.
+std::vector<Candidate> throwDarts(double area, double spacing, const Points& existing,
+                                  const Propose& propose, const PatchSettings& settings) {
   PointGrid taken(existing, 2 * spacing);
   std::vector<Candidate> kept;
-  const double room = area / (spacing * spacing);
-  const std::size_t round = static_cast<std::size_t>(std::clamp(kCandidates * room, 64.0, 4e6));
-  // By parts: what is near points that are taken already need not be looked at any closer.
-  const std::size_t part = std::max(kLeastPart, round / kParts);
-  std::vector<Candidate> candidates;
-  std::size_t drawn = 0;
-  const auto wanted = [&] { return kept.size() < settings.most; };
-  for (int r = 0; r < kMostRounds && area > 0 && wanted(); ++r, drawn += round) {
-    std::size_t fresh = 0;
-    for (std::size_t first = 0; first < round && wanted(); first += part) {
-      candidates.resize(std::min(part, round - first));
-      parallelBlocks(
-          candidates.size(), 16,
-          [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-              candidates[i] = propose(drawn + first + i, taken);
-          },
-          "placing points");
-      for (const Candidate& c : candidates) {
-        if (!c.good || taken.anyNearer(c.position, spacing)) continue;
-        taken.add(c.position);
-        kept.push_back(c);
-        ++fresh;
-      }
+  // By parts: what is near points that are taken already need not be looked at any closer. Each
+  // goes once over the area, in order: what is near a candidate has just been read for others.
+  const double share = area / (spacing * spacing) / kParts;
+  const std::size_t part =
+      std::max(kLeastPart, static_cast<std::size_t>(std::min(share, kLargestPart)));
+  const CounterRandom random(settings.seed, 23);
+  std::vector<Candidate> candidates(part);
+  std::size_t before = 0;
+  for (std::size_t p = 0; p < kMostParts && area > 0 && kept.size() < settings.most; ++p) {
+    parallelBlocks(
+        part, 16,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const double in = random.uniform(2 * (p * part + i));
+            candidates[i] = propose(
+                p * part + i, (static_cast<double>(i) + in) / static_cast<double>(part), taken);
+          }
+        },
+        "placing points");
+    for (const Candidate& c : candidates) {
+      if (!c.good || taken.anyNearer(c.position, spacing)) continue;
+      taken.add(c.position);
+      kept.push_back(c);
     }
-    if (static_cast<double>(fresh) < kFewTaken * static_cast<double>(round)) break;
+    if ((p + 1) % kParts > 0) continue;
+    const auto few = std::max(kFewMore * static_cast<double>(kept.size()),
+                              kFewTaken * static_cast<double>(kParts * part));
+    if (static_cast<double>(kept.size() - before) <= few) break;
+    before = kept.size();
   }
-  // In the order of the draw: the first ones are a random choice.
-  if (kept.size() > settings.most) kept.resize(settings.most);
+  // A random choice.
+  for (std::size_t i = 0; i < settings.most && kept.size() > settings.most; ++i)
+    std::swap(kept[i], kept[i + random.bits(2 * i + 1) % (kept.size() - i)]);
+  kept.resize(std::min(kept.size(), settings.most));
   return kept;
 }
 
@@ -169,27 +138,28 @@ Points patchSources(const Solid& solid, const Points& marks, double distance,
   check(settings);
   requireNumber("distance", distance, {1e-6, 2}, "fraction of the diagonal");
   const Mesh& surface = solid.surface();
-  const double diagonal = solid.diagonal(), away = distance * diagonal,
-               spacing = settings.spacing * diagonal;
-  const Patch patch(solid, marks, settings.reach * diagonal);
+  const double away = distance * solid.diagonal(), spacing = settings.spacing * solid.diagonal();
+  const SurfacePatch patch = patchOf(solid, marks, settings);
   const CounterRandom random(settings.seed, 21);
   SideCells sides(solid, kClearance * away);
-  const auto propose = [&](std::size_t i, const PointGrid& taken) {
-    const auto uniform = [&](std::size_t k) { return random.uniform(6 * i + k); };
-    Candidate c{patch.sample(uniform(0), uniform(1), uniform(2)), {}, false};
+  const auto propose = [&](std::size_t i, double share, const PointGrid& taken) {
+    const auto uniform = [&](std::size_t k) { return random.uniform(5 * i + k); };
+    const auto free = [&](const Vec3& p) { return !taken.anyNearer(p, spacing); };
+    Candidate c{patch.sample(share, uniform(0), uniform(1)), {}, false};
     const Vec3 foot = positionOf(surface, c.address);
     if (!patch.holds(foot)) return c;
     const Vec3 area = areaVector(surface, c.address.triangle), normal = area / norm(area);
-    const bool along = uniform(3) < kAlongNormal;
+    const bool along = uniform(2) < kAlongNormal;
     Vec3 direction = normal;
     if (!along) {
-      direction = randomDirection(uniform(4), uniform(5));
+      direction = randomDirection(uniform(3), uniform(4));
       if (dot(direction, normal) < 0) direction = -direction;
     }
     c.position = foot + away * direction;
-    if (!along && !(moveToDistance(solid, away, c.position) <= (1 - kClearance) * away)) return c;
+    if (!along && !(moveToDistance(solid, away, c.position, free) <= (1 - kClearance) * away))
+      return c;
     // What was moved to the distance has been looked at there.
-    c.good = !taken.anyNearer(c.position, spacing) &&
+    c.good = free(c.position) &&
              (!along || solid.closest(c.position, kClearance * away).onSurface.triangle < 0) &&
              !sides.inside(c.position);
     return c;
@@ -203,12 +173,12 @@ Points patchSources(const Solid& solid, const Points& marks, double distance,
 std::vector<SurfacePoint> patchSamples(const Solid& solid, const Points& marks,
                                        const Points& existing, const PatchSettings& settings) {
   check(settings);
-  const double diagonal = solid.diagonal(), spacing = settings.spacing * diagonal;
-  const Patch patch(solid, marks, settings.reach * diagonal);
+  const double spacing = settings.spacing * solid.diagonal();
+  const SurfacePatch patch = patchOf(solid, marks, settings);
   const CounterRandom random(settings.seed, 22);
-  const auto propose = [&](std::size_t i, const PointGrid& taken) {
-    const auto uniform = [&](std::size_t k) { return random.uniform(3 * i + k); };
-    Candidate c{patch.sample(uniform(0), uniform(1), uniform(2)), {}, false};
+  const auto propose = [&](std::size_t i, double share, const PointGrid& taken) {
+    const auto uniform = [&](std::size_t k) { return random.uniform(2 * i + k); };
+    Candidate c{patch.sample(share, uniform(0), uniform(1)), {}, false};
     c.position = positionOf(solid.surface(), c.address);
     c.good = !taken.anyNearer(c.position, spacing) && patch.holds(c.position);
     return c;

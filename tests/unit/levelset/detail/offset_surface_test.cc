@@ -73,6 +73,9 @@ TEST(OffsetSurface, MovePointsToTheDistance) {
     Vec3 p = r / std::sqrt(3.0) * Vec3{1, 1, 1};
     EXPECT_LT(moveToDistance(solid, 0.2, p), 1e-9);
     EXPECT_NEAR(solid.distance(p), 0.2, 1e-9);
+    Vec3 other = r / std::sqrt(3.0) * Vec3{1, 1, 1};
+    const auto nowhere = [](const Vec3&) { return false; };
+    EXPECT_TRUE(std::isinf(moveToDistance(solid, 0.2, other, nowhere)));
   }
 }
 
