@@ -11,7 +11,9 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kBlock = 512;  // targets worked on together: one leaf of a grid
-constexpr std::size_t kGroup = 3;    // channels summed together: what fits the registers
+// Few targets go in so many parts, that all threads have some, each of so many at least.
+constexpr std::size_t kParts = 32, kLeastBlock = 64;
+constexpr std::size_t kGroup = 3;  // channels summed together: what fits the registers
 
 // Coordinates of targets as the kernels read them, padded with copies of the last one.
 struct TargetBlock {
@@ -98,7 +100,8 @@ FieldSamples sumCharges(const Charges& charges, const Points& points, bool gradi
   FieldSamples out;
   out.values = Matrix(n, channels);
   if (gradients) out.gradients = Matrix(n, 3 * channels);
-  parallelBlocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+  const std::size_t block = std::clamp(n / kParts, kLeastBlock, kBlock);
+  parallelBlocks(n, block, [&](std::size_t begin, std::size_t end) {
     const std::size_t size = end - begin;
     std::vector<double> values(size * channels), slopes(gradients ? size * 3 * channels : 0);
     charges.addTo(points.data() + begin, size, values.data(), gradients ? slopes.data() : nullptr);
