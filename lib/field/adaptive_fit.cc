@@ -18,7 +18,10 @@ namespace {
 constexpr double kDistance = 1.0;           // spacings
 constexpr double kSourceDarts = 0.83;       // spacings; fills to one charge a spacing squared
 constexpr double kCollocationDarts = 0.46;  // spacings; three points a charge
-constexpr double kCollocationReach = 2;     // distances, from a new charge
+// Distances, from a new charge: what is nearer to its foot than other charges' feet, which stand
+// kSourceDarts apart or a little more, is within sqrt(1 + kSourceDarts^2) = 1.3. With 2, single
+// charges had six points each.
+constexpr double kCollocationReach = 1.35;
 // Points a charge, of all, before the darts of a level get closer: where a part is thinner than the
 // charges' distance, their shell is larger than its surface.
 constexpr double kLeastPoints = 1.5;
@@ -28,9 +31,10 @@ constexpr double kNearest = 1e-6;  // of the diagonal
 constexpr std::size_t kMarkSamples = 30000;
 // Of the tolerance; other points than those that were looked at differ a little.
 constexpr double kMargin = 0.97;
-constexpr double kAccuracy = 1e-3;      // of the solution, of the tolerance
-constexpr double kMarkAccuracy = 1e-2;  // of the errors that are marked, of the tolerance
-constexpr double kLeastGain = 0.97;     // of the score in the rounds of patience
+constexpr double kAccuracy = 1e-3;  // of the solution, of the tolerance
+// Of the errors that are marked, and of those that decide; of the tolerance.
+constexpr double kMarkAccuracy = 1e-2, kCheckAccuracy = 1e-3;
+constexpr double kLeastGain = 0.97;  // of the score in the rounds of patience
 // Of the most charges: a round for the few that are left costs as much as the one before.
 constexpr double kFull = 0.97;
 constexpr double kForNothing = 4;     // times the charges that did as well
@@ -309,7 +313,8 @@ AdaptiveResult AdaptiveFitting::run() {
   first();
   const BoundarySamples checks = problem_.draw(settings_.checkSamples, 0);
   const auto errorsAtChecks = [&](const HarmonicField& field) {
-    return boundaryErrors(field, checks.collocation(), checks.values, problem_.unit, {0});
+    return boundaryErrors(field, checks.collocation(), checks.values, problem_.unit,
+                          {kCheckAccuracy * settings_.tolerance * problem_.unit});
   };
   std::vector<double> checked;   // errors at the checks
   std::size_t checkedRound = 0;  // of the field that has them
