@@ -22,11 +22,12 @@ namespace {
 // whose folds beside the surface smaller steps cure more seldom. The way through smoothed shapes is
 // longer, so that the same step is a smaller part of it.
 constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32, kOfSmoothed = 0.25;
-// Of the tolerance: what a step before the last may leave, times its part of the way; what the last
-// one may leave. Where one step's errors are large the others' are too, and point the same way, so
-// they add up in full. Tolerances small enough for their sum cost more charges than a last step
-// that also mends what the others left.
-constexpr double kShare = 1.5, kLastShare = 0.6;
+// Of the tolerance: what a step before the last may leave, however short it is; what the last one
+// may. Each step also mends what those before it left, so that errors do not add up. Where only
+// the last one mended, the others had to leave less the shorter they were: half of a step at half
+// its tolerance takes as many charges as the whole, and ways of many steps took twice the charges
+// in all, to end farther off.
+constexpr double kShare = 0.4, kLastShare = 0.6;
 // Through smoothed shapes the length tells little of the work. A step may leave the usual share at
 // first; while steps take fewer charges than kUsualSources the next may leave less, down to the
 // least, and after one that missed it more, up to the most. A tenth all the way took half as long
@@ -39,15 +40,16 @@ constexpr double kUsualSources = 3000, kSharePower = 0.5, kShareChange = 2;
 // find no room. Each step after it takes many seconds, and leaves as much.
 constexpr double kCrumpled = 1.3;
 // Of the tolerance: what is left of a point's error, as mending all of it makes the map rough, with
-// many times the volume whose sense is undecided; and by how much a point is mended at most, as
-// what is farther off lies in creases, where charges do not help.
+// many times the volume whose sense is undecided; and by how much a step mends a point at most, as
+// what is farther off lies in creases, where charges do not help. Through smoothed shapes the last
+// step alone mends: the others are so many and so short that mending would take most of their
+// charges.
 constexpr double kKept = 0.375, kMended = 1.25;
-// Times its own tolerance that a step leaves, and of the whole that the steps' errors add up to:
-// beyond that, or where the map folds many points, the way is lost. Steps that are met add up to
-// kShare, or twice that where many are short; in maps that were kept, those that missed left 2.2
-// times what they may. Where an intermediate shape runs through itself a step leaves five to thirty
-// times as much, and so do those after it.
-constexpr double kLeap = 4, kLost = 8;
+// Times its own tolerance that a step leaves, and of the whole that steps leave beyond their own in
+// all: beyond that, or where the map folds many points, the way is lost. In maps that were kept,
+// steps that missed left 1.8 times what they may (2.2 through smoothed shapes). Where an
+// intermediate shape runs through itself a step leaves much more, and so do those after it.
+constexpr double kLeap = 2.5, kSmoothedLeap = 4, kLost = 6;
 // Steps in a row through smoothed shapes that did not fold before longer ones are tried again.
 constexpr int kStepsInRow = 4;
 constexpr double kLengthSlack = 1.01;  // for rounding
@@ -102,7 +104,7 @@ class StepFitter {
         unit_(pair.target.diagonal / path_.rest().scale),
         boundary_(pair.solid(), carrySettings()),
         inside_{inside, {}},
-        leastShare_(smoothed_ ? kUsualShare : 0) {}
+        share_(smoothed_ ? kUsualShare : kShare) {}
 
   // False once the way is lost, where its end is not reached.
   bool go() {
@@ -193,8 +195,7 @@ class StepFitter {
   }
 
   double toleranceUntil(double end) const {
-    const double share = end < 1 ? std::max(kShare * (end - at_), leastShare_) : kLastShare;
-    return std::max(share * settings_.tolerance, kSmallestTolerance);
+    return std::max((end < 1 ? share_ : kLastShare) * settings_.tolerance, kSmallestTolerance);
   }
 
   std::size_t mostSources() const {
@@ -210,7 +211,7 @@ class StepFitter {
     Points ways = path_.at(to);
     for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now_[v];
     std::optional<Mending> mending;
-    if (last && at_ > 0) {
+    if (at_ > 0 && (last || !smoothed_)) {
       const double tolerance = settings_.tolerance * unit_;
       mending = Mending{now_, kKept * tolerance, kMended * tolerance};
     }
@@ -284,23 +285,23 @@ class StepFitter {
     double tolerance = toleranceUntil(step.to);
     if (!smoothed_) return step.error > kLeap * tolerance;
     tolerance = std::max(tolerance, kUsualShare * settings_.tolerance);
-    return step.error > (step.sources < kUsualSources ? kCrumpled : kLeap) * tolerance;
+    return step.error > (step.sources < kUsualSources ? kCrumpled : kSmoothedLeap) * tolerance;
   }
 
-  void changeLeastShare(std::size_t sources, bool met) {
+  void changeShare(std::size_t sources, bool met) {
     if (!met) {
-      leastShare_ = std::min(kShareChange * leastShare_, kMostShare);
+      share_ = std::min(kShareChange * share_, kMostShare);
       return;
     }
     const double change = std::pow(static_cast<double>(sources) / kUsualSources, kSharePower);
-    leastShare_ = std::clamp(leastShare_ * std::clamp(change, 1 / kShareChange, kShareChange),
-                             kLeastShare, std::max(kUsualShare, leastShare_));
+    share_ = std::clamp(share_ * std::clamp(change, 1 / kShareChange, kShareChange), kLeastShare,
+                        std::max(kUsualShare, share_));
   }
 
   void take(Step step, bool last) {
-    missed_ += step.fit.error.p99;
+    missed_ += std::max(0.0, step.fit.error.p99 - toleranceUntil(step.record.to));
     leapt_ = step.fit.end == AdaptiveEnd::noGain && leaps(step.record);
-    if (smoothed_) changeLeastShare(step.record.sources, step.fit.end == AdaptiveEnd::met);
+    if (smoothed_) changeShare(step.record.sources, step.fit.end == AdaptiveEnd::met);
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
     now_ = path_.at(at_);
@@ -322,13 +323,13 @@ class StepFitter {
   double at_ = 0;  // of the way
   Points now_ = path_.at(0);
   double folded_ = 0;   // share of the points inside, so far
-  double missed_ = 0;   // the steps' errors, added up
+  double missed_ = 0;   // what the steps left beyond their tolerances, added up
   bool leapt_ = false;  // the last step left much more than it may, though it had the charges
   // That a step may be through smoothed shapes: half of what folded last, doubled in time. On the
   // usual way long steps tell soonest that it is lost.
   double longest_ = 1;
-  double leastShare_;  // of the tolerance, that a step may leave however short it is
-  int inRow_ = 0;      // steps since then
+  double share_;   // of the tolerance, that a step before the last may leave
+  int inRow_ = 0;  // steps since then
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 

@@ -31,13 +31,14 @@ struct StepFit {
 
 // Each step starts from where the steps before it take the boundary, not from the shape that they
 // were to reach: so nothing is ever outside the solid that a step is fitted on, and an error is
-// handed on as it is, not magnified. The last step also brings points back that the others left far
-// from where they should be. A step that folds points inside is halved while there are fewer than
-// maxSteps: where its first charges fold more than a quarter, or the whole fit more than half, of
-// what is left of `folds`; or where cells are proven to fold, if that is asked for. Where
-// intermediate shapes run through themselves the way goes through smoothed ones (shape_smoother.h),
-// at once or when it is lost; where both are lost, one step does the rest of the first. inside:
-// points of the source. Throws DataError, MemoryError, Cancelled.
+// handed on as it is, not magnified. Each step also brings points back that those before it left
+// far from where they should be (through smoothed shapes the last one alone). A step that folds
+// points inside is halved while there are fewer than maxSteps: where its first charges fold more
+// than a quarter, or the whole fit more than half, of what is left of `folds`; or where cells are
+// proven to fold, if that is asked for. Where intermediate shapes run through themselves the way
+// goes through smoothed ones (shape_smoother.h), at once or when it is lost; where both are lost,
+// one step does the rest of the first. inside: points of the source. Throws DataError, MemoryError,
+// Cancelled.
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings);
 
 }  // namespace innermap
