@@ -39,7 +39,7 @@ Points mended(Points ways, const Points& now, const Points& from, const Mending&
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const Vec3 off = from[i] - now[i];
     const double size = norm(off);
-    const double part = std::min(size - mending.kept, mending.most);
+    const double part = std::min({size - mending.kept, mending.most, mending.far - size});
     if (part > 0) ways[i] = ways[i] + (part / size) * off;
   }
   return ways;

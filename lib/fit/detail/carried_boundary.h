@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -22,10 +23,11 @@ struct CarriedSettings {
 };
 
 // The way also brings points back to where `from`, positions of the source's vertices, has them: to
-// within `kept`, and by `most` at most. World units.
+// within `kept`, by `most` at most, and the less the nearer they are to being `far` off. World
+// units.
 struct Mending {
   Points from;
-  double kept = 0, most = 0;
+  double kept = 0, most = 0, far = std::numeric_limits<double>::infinity();
 };
 
 class CarriedBoundary {
