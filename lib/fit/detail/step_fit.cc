@@ -25,8 +25,8 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32, kOfSmoothed 
 // Of the tolerance: what a step before the last may leave, however short it is; what the last one
 // may. Each step also mends what those before it left, so that errors do not add up. Where only
 // the last one mended, the others had to leave less the shorter they were: half of a step at half
-// its tolerance takes as many charges as the whole, and ways of many steps took twice the charges
-// in all, to end farther off.
+// its tolerance takes as many charges as the whole, and ways of many steps took 1.5 to 2 times the
+// charges in all, to end as far off.
 constexpr double kShare = 0.4, kLastShare = 0.6;
 // Through smoothed shapes the length tells little of the work. A step may leave the usual share at
 // first; while steps take fewer charges than kUsualSources the next may leave less, down to the

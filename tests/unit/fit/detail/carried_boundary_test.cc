@@ -69,12 +69,16 @@ TEST_F(Carried, WaysMakeUpForWhatIsOff) {
   Points from = solid.repaired().mesh.vertices;
   for (Vec3& p : from) p.x += 0.6;
   struct Case {
-    double kept, most, made;
+    Mending mending;
+    double made;
   };
-  for (const auto& [kept, most, made] :
-       {Case{0, 1, 0.1}, {0.04, 1, 0.06}, {0.04, 0.03, 0.03}, {0.2, 1, 0}}) {
-    const AdaptiveProblem problem =
-        boundary.problem(ways({0, 0, 1}), solid.diagonal(), Mending{from, kept, most});
+  for (const auto& [mending, made] : {Case{{from, 0, 1}, 0.1},
+                                      {{from, 0.04, 1}, 0.06},
+                                      {{from, 0.04, 0.03}, 0.03},
+                                      {{from, 0.2, 1}, 0},
+                                      {{from, 0, 1, 0.15}, 0.05},
+                                      {{from, 0, 1, 0.08}, 0}}) {
+    const AdaptiveProblem problem = boundary.problem(ways({0, 0, 1}), solid.diagonal(), mending);
     PlacementRequest everywhere;
     everywhere.spacing = everywhere.reach = 0.05;
     everywhere.most = 1000;
