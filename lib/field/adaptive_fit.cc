@@ -76,7 +76,7 @@ class AdaptiveFitting {
   bool refine(const std::vector<Points>& marks);
   bool refineOnce(const std::vector<Points>& marks);
   void collocate(PlacementRequest request, Matrix& values);
-  Points takeLoose(Level& level, std::size_t last) const;
+  Points dropLoose(Level& level, std::size_t last) const;
   void solve();
   double score(const BoundaryError& error) const;
   void keepIfBest();
@@ -175,9 +175,9 @@ void AdaptiveFitting::collocate(PlacementRequest request, Matrix& values) {
   }
 }
 
-// Takes those of the level's last charges away that no point is near, as at the tips of needles:
-// they could take any weight. (One of 12,597 left a point 1.7 diagonals off.) Returns the others.
-Points AdaptiveFitting::takeLoose(Level& level, std::size_t last) const {
+// Drops those of the level's last charges that no point is near, as at the tips of needles: they
+// could take any weight. (One of 12,597 left a point 1.7 diagonals off.) Returns the others.
+Points AdaptiveFitting::dropLoose(Level& level, std::size_t last) const {
   const double reach = kCollocationReach * level.distance * problem_.diagonal;
   const PointGrid points(collocation_.points, 2 * reach);
   const auto first = static_cast<std::ptrdiff_t>(level.sources.size() - last);
@@ -211,11 +211,17 @@ bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
                {},
                100 * fresh.size() + 1000},
               values);
-    const Points held = takeLoose(fine, fresh.size());
+    const Points held = dropLoose(fine, fresh.size());
     if (held.empty()) continue;
     added.push_back({held, fine.spacing * problem_.diagonal, fine.distance * problem_.diagonal});
   }
-  if (added.empty()) return false;
+  if (added.empty()) {
+    // Points whose charges were all dropped have no values in the solver.
+    std::vector<std::size_t> solved(before);
+    std::iota(solved.begin(), solved.end(), std::size_t{0});
+    if (collocation_.size() > before) collocation_ = collocation_.subset(solved);
+    return false;
+  }
   if (collocation_.size() < sourceCount()) {
     end_ = AdaptiveEnd::noGain;
     return false;

@@ -14,8 +14,11 @@ SurfacePatch::SurfacePatch(const Mesh& surface, const Points& marks, double reac
   const std::size_t count = surface.triangles.size();
   std::vector<std::vector<Part>> parts((count + kBlock - 1) / kBlock);
   parallelBlocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      addNear(static_cast<int>(t), kWhole, parts[begin / kBlock]);
+    for (std::size_t t = begin; t < end; ++t) {
+      Box3 box;
+      for (const int v : surface.triangles[t]) box.add(surface.vertices[v]);
+      addNear(static_cast<int>(t), kWhole, 0.5 * box.diagonal(), parts[begin / kBlock]);
+    }
   });
   double sum = 0;
   for (const std::vector<Part>& some : parts)
@@ -33,11 +36,11 @@ SurfacePatch::Barycentric SurfacePatch::at(const Corners& corners, const Barycen
   return out;
 }
 
-void SurfacePatch::addNear(int triangle, const Corners& corners, std::vector<Part>& parts) const {
+void SurfacePatch::addNear(int triangle, const Corners& corners, double half,
+                           std::vector<Part>& parts) const {
   Vec3 p[3];
   Box3 box;
   for (std::size_t c = 0; c < 3; ++c) box.add(p[c] = positionOf(surface_, {triangle, corners[c]}));
-  const double half = 0.5 * box.diagonal();
   if (!all_ && !marks_.anyNearer(box.center(), reach_ + half)) return;
   if (all_ || 2 * half <= fine_ || marks_.anyNearer(box.center(), std::max(0.0, reach_ - half))) {
     parts.push_back({triangle, corners, norm(cross(p[1] - p[0], p[2] - p[0]))});
@@ -49,11 +52,11 @@ void SurfacePatch::addNear(int triangle, const Corners& corners, std::vector<Par
     opposite[c] = 0;
     middle[c] = at(corners, opposite);
   }
-  addNear(triangle, middle, parts);
+  addNear(triangle, middle, 0.5 * half, parts);
   for (std::size_t c = 0; c < 3; ++c) {
     Corners part = middle;
     part[c] = corners[c];
-    addNear(triangle, part, parts);
+    addNear(triangle, part, 0.5 * half, parts);
   }
 }
 

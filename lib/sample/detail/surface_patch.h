@@ -36,7 +36,9 @@ class SurfacePatch {
   };
 
   static Barycentric at(const Corners& corners, const Barycentric& inside);
-  void addNear(int triangle, const Corners& corners, std::vector<Part>& parts) const;
+  // half: of the diagonal of the part's box; handed down, as rounding may keep a box from
+  // shrinking.
+  void addNear(int triangle, const Corners& corners, double half, std::vector<Part>& parts) const;
 
   const Mesh& surface_;
   const PointGrid marks_;
