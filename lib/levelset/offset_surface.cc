@@ -178,8 +178,12 @@ Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings) {
   return result;
 }
 
-double moveToDistance(const Solid& solid, double distance, Vec3& p,
-                      const std::function<bool(const Vec3&)>& worthwhile) {
+bool isNearer(const Solid& solid, const Vec3& p, double than) {
+  return solid.body().tree().hasCloser(p, than);
+}
+
+double moveToDistance(const Solid& solid, double distance, Vec3& p, double enough,
+                      const Worthwhile& worthwhile) {
   Vec3 best = p;
   double bestError = std::numeric_limits<double>::infinity();
   for (int step = 0; step < 8; ++step) {
@@ -193,7 +197,11 @@ double moveToDistance(const Solid& solid, double distance, Vec3& p,
     }
     if (error <= 1e-9 * distance || !(c.distance > 0)) break;
     p = c.position + (distance / c.distance) * (p - c.position);
-    if (worthwhile && !worthwhile(p)) return std::numeric_limits<double>::infinity();
+    if (worthwhile && !worthwhile(p, c)) return std::numeric_limits<double>::infinity();
+    // The ball about p lies in the one that was free: nothing is nearer than c.position.
+    if (c.distance > distance) return 0;
+    // c.position is at the distance, so only what is nearer is left to look for.
+    if (!isNearer(solid, p, (1 - enough) * distance)) return enough * distance;
   }
   p = best;
   return bestError;

@@ -21,11 +21,18 @@ struct OffsetSettings {
 // moved out along its normals.
 Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings);
 
+// Whether any point of solid.surface() is nearer to p than that (world units): cheaper than which
+// one is the closest.
+bool isNearer(const Solid& solid, const Vec3& p, double than);
+
+// Whether to go on at p, which was moved along the line through its closest point.
+using Worthwhile = std::function<bool(const Vec3& p, const Solid::Closest& closest)>;
+
 // Moves p away from or towards the closest points of solid.surface() until its distance is
-// `distance` (world units); returns by how much it still differs (in a crease between parts there
-// may be no such point nearby). Gives up, and returns infinity, once p has moved to where
-// worthwhile(p) is false.
-double moveToDistance(const Solid& solid, double distance, Vec3& p,
-                      const std::function<bool(const Vec3&)>& worthwhile = {});
+// `distance` (world units), at most the share `enough` of it nearer; returns by how much it may
+// still differ (in a crease between parts there may be no such point nearby). Gives up, and returns
+// infinity, once it is not worthwhile.
+double moveToDistance(const Solid& solid, double distance, Vec3& p, double enough = 1e-9,
+                      const Worthwhile& worthwhile = {});
 
 }  // namespace innermap

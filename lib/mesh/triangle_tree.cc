@@ -213,7 +213,8 @@ struct TriangleTree::Implementation {
       if (!(entry.squared <= best.squared)) continue;
       const Bvh::Node& node = bvh.nodes[entry.node];
       if (node.leaf()) {
-        for (int i = node.first; i < node.first + node.count; ++i) search(i, p, best, bestIndex);
+        for (int i = node.first; i < node.first + node.count; ++i)
+          if (squaredDistance(i, p) <= best.squared) search(i, p, best, bestIndex);
         if (first && bestIndex >= 0) break;
         continue;
       }

@@ -19,7 +19,7 @@ namespace innermap {
 namespace {
 
 constexpr double kClearance = 0.97;   // of the distance
-constexpr double kAlongNormal = 0.6;  // share of candidates; the others reach over convex edges
+constexpr double kAlongNormal = 0.7;  // share of candidates; the others go over convex edges
 // Candidates are thrown in parts, so many for each point that has room in an empty patch, until
 // hardly any of so many parts is taken: of what there is, or of the candidates.
 constexpr int kParts = 4, kMostParts = 400;
@@ -126,6 +126,11 @@ std::vector<Candidate> throwDarts(double area, double spacing, const Points& exi
   return kept;
 }
 
+bool isOnEdge(const SurfacePoint& p) {
+  constexpr double kRounding = 1e-6;
+  return *std::min_element(p.barycentric.begin(), p.barycentric.end()) < kRounding;
+}
+
 Vec3 randomDirection(double u, double v) {
   const double z = 2 * u - 1, r = std::sqrt(1 - z * z), angle = 2 * kPi * v;
   return {r * std::cos(angle), r * std::sin(angle), z};
@@ -145,23 +150,24 @@ Points patchSources(const Solid& solid, const Points& marks, double distance,
   const auto propose = [&](std::size_t i, double share, const PointGrid& taken) {
     const auto uniform = [&](std::size_t k) { return random.uniform(5 * i + k); };
     const auto free = [&](const Vec3& p) { return !taken.anyNearer(p, spacing); };
+    const auto overEdge = [&](const Vec3& p, const Solid::Closest& closest) {
+      return free(p) && isOnEdge(closest.onSurface);
+    };
     Candidate c{patch.sample(share, uniform(0), uniform(1)), {}, false};
     const Vec3 foot = positionOf(surface, c.address);
     if (!patch.holds(foot)) return c;
     const Vec3 area = areaVector(surface, c.address.triangle), normal = area / norm(area);
-    const bool along = uniform(2) < kAlongNormal;
-    Vec3 direction = normal;
-    if (!along) {
-      direction = randomDirection(uniform(3), uniform(4));
-      if (dot(direction, normal) < 0) direction = -direction;
+    if (uniform(2) < kAlongNormal) {
+      c.position = foot + away * normal;
+      c.good = free(c.position) && !isNearer(solid, c.position, kClearance * away);
+    } else {
+      const Vec3 direction = randomDirection(uniform(3), uniform(4));
+      c.position = foot + (dot(direction, normal) < 0 ? -away : away) * direction;
+      constexpr double kEnough = 1 - kClearance;
+      c.good = moveToDistance(solid, away, c.position, kEnough, overEdge) <= kEnough * away &&
+               free(c.position);
     }
-    c.position = foot + away * direction;
-    if (!along && !(moveToDistance(solid, away, c.position, free) <= (1 - kClearance) * away))
-      return c;
-    // What was moved to the distance has been looked at there.
-    c.good = free(c.position) &&
-             (!along || solid.closest(c.position, kClearance * away).onSurface.triangle < 0) &&
-             !sides.inside(c.position);
+    c.good = c.good && !sides.inside(c.position);
     return c;
   };
   Points out;

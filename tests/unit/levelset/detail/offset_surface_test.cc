@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/expect.h"
+#include "core/random.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -74,9 +75,29 @@ TEST(OffsetSurface, MovePointsToTheDistance) {
     EXPECT_LT(moveToDistance(solid, 0.2, p), 1e-9);
     EXPECT_NEAR(solid.distance(p), 0.2, 1e-9);
     Vec3 other = r / std::sqrt(3.0) * Vec3{1, 1, 1};
-    const auto nowhere = [](const Vec3&) { return false; };
-    EXPECT_TRUE(std::isinf(moveToDistance(solid, 0.2, other, nowhere)));
+    const auto nowhere = [](const Vec3&, const Solid::Closest&) { return false; };
+    EXPECT_TRUE(std::isinf(moveToDistance(solid, 0.2, other, 1e-9, nowhere)));
   }
+}
+
+TEST(OffsetSurface, MovedPointsAreNoFurtherOffThanTold) {
+  const Solid solid(
+      shapes::joined(shapes::icosphere(2), shapes::icosphere(2, 0.8, {0.9, 0.1, 0.2})));
+  const CounterRandom random(17, 0);
+  constexpr double kDistance = 0.2;
+  int settled = 0;
+  for (std::size_t i = 0; i < 600; ++i) {
+    const double enough = i % 2 == 0 ? 1e-9 : 0.03;
+    Vec3 p{4 * random.uniform(3 * i) - 2, 4 * random.uniform(3 * i + 1) - 2,
+           4 * random.uniform(3 * i + 2) - 2};
+    const double off = moveToDistance(solid, kDistance, p, enough);
+    const double distance = solid.distance(p);
+    EXPECT_NEAR(distance, kDistance, off + 1e-12);
+    settled += off <= enough * kDistance;
+    EXPECT_TRUE(isNearer(solid, p, distance * (1 + 1e-12)));
+    EXPECT_FALSE(isNearer(solid, p, distance * (1 - 1e-12)));
+  }
+  EXPECT_GT(settled, 500);
 }
 
 TEST(OffsetSurface, SettingsAndCancelling) {

@@ -5,6 +5,7 @@
 #include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
+#include "mesh/shapes.h"
 
 namespace innermap {
 namespace {
@@ -51,6 +52,25 @@ TEST(PatchPoints, SourcesKeepDistanceSpacingAndOutside) {
       EXPECT_GE(nearestOf(points, points[i], i), s.spacing * d);
     }
   }
+}
+
+// A maximal set of points `spacing` apart leaves nothing farther than that from one of them. Darts
+// end a little before it.
+TEST(PatchPoints, SourcesGoRoundEdgesAndCorners) {
+  const Solid solid(boxesWithGap());
+  const double d = solid.diagonal(), distance = 0.1, spacing = 0.03;
+  const Points points = patchSources(solid, {}, distance, {}, {.spacing = spacing});
+  for (const Vec3& outward : {Vec3{-1, -1, -1}, Vec3{-1, 0, -1}, Vec3{0, -1, 1}, Vec3{-1, 1, 0}}) {
+    const Vec3 foot{outward.x < 0 ? 0 : 0.5, 0.5 + 0.5 * outward.y, 0.5 + 0.5 * outward.z};
+    const Vec3 over = foot + distance * d / norm(outward) * outward;
+    EXPECT_LT(nearestOf(points, over, points.size()), 1.5 * spacing * d);
+  }
+  // Everything is over edges where triangles are far smaller than the distance.
+  const Solid ball(shapes::icosphere(4));
+  const Points around = patchSources(ball, {}, 0.1, {}, {.spacing = 0.08});
+  for (const Vec3& v : shapes::icosphere(2).vertices)
+    EXPECT_LT(nearestOf(around, (1 + 0.1 * ball.diagonal()) * v, around.size()),
+              1.5 * 0.08 * ball.diagonal());
 }
 
 TEST(PatchPoints, NarrowGapsWaitForAShorterDistance) {
