@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fit/detail/bent_mesh.h"
 #include "fit/detail/problem_samples.h"
 #include "fit/detail/streams.h"
 #include "innermap/core/run.h"
@@ -19,13 +20,13 @@ constexpr std::size_t kMoreTriangles = 100000, kTimesTriangles = 4;
 constexpr double kExact = 0.4;  // of a charge's distance, that the mesh may be off at its foot
 
 // At places on solid.surface(), from values at the vertices that the solid was made of.
-Matrix interpolated(const Points& vertices, const Solid& solid,
+Points interpolated(const Points& vertices, const Solid& solid,
                     const std::vector<SurfacePoint>& places) {
   TargetBoundary values;
   values.moved = vertices.size() == solid.repaired().mesh.vertices.size()
                      ? vertices
                      : repairedPositions(solid.repaired(), vertices);
-  return values.targetsOf(solid, places);
+  return pointsOf(values.targetsOf(solid, places));
 }
 
 BoundarySamples samplesFrom(const Points& now, const Points& ways) {
@@ -46,11 +47,11 @@ Points mended(Points ways, const Points& now, const Points& from, const Mending&
 }
 
 // Three columns for each.
-Matrix beside(const std::vector<Matrix>& parts) {
-  Matrix out(parts.front().rows(), 3 * parts.size());
+Matrix beside(const std::vector<Points>& parts) {
+  Matrix out(parts.front().size(), 3 * parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p)
-    for (std::size_t k = 0; k < 3; ++k)
-      std::copy_n(parts[p].column(k), out.rows(), out.column(3 * p + k));
+    for (std::size_t i = 0; i < out.rows(); ++i)
+      for (int k = 0; k < 3; ++k) out(i, 3 * p + static_cast<std::size_t>(k)) = parts[p][i][k];
   return out;
 }
 
@@ -127,44 +128,66 @@ void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
   solid_ = Solid(now, solid);
 }
 
+Points CarriedBoundary::imagesOf(const std::vector<SurfacePoint>& places, bool exact) const {
+  if (steps_.empty()) return positionsOf(solid_, places);
+  const BentMesh mesh(solid_, edges_);
+  Points out(places.size());
+  std::vector<char> known(places.size());
+  parallelBlocks(places.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const BentMesh::Place p = mesh.at(places[i]);
+      out[i] = p.position;
+      known[i] = !exact && p.bent <= settings_.chord;
+    }
+  });
+  std::vector<SurfacePoint> others;
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (!known[i]) others.push_back(places[i]);
+  const Points on = carried(interpolated(surface_.positions, solid_, others), 0);
+  auto next = on.begin();
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (!known[i]) out[i] = *next++;
+  return out;
+}
+
 // Those that stand where the mesh about the present solid is as good as exact at their distance
-// from it: elsewhere a charge could touch the exact images, or stand inside of them.
-Points CarriedBoundary::known(const Points& charges, double distance, const SurfaceValues& values) {
+// from it: elsewhere a charge could touch the images, or stand inside of them.
+Points CarriedBoundary::known(const Points& charges, double distance) const {
   std::vector<SurfacePoint> feet(charges.size());
   parallelBlocks(charges.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       feet[i] = solid_.closest(charges[i], solid_.diagonal()).onSurface;
   });
-  const Points on = positionsOf(solid_, feet), exact = carried(pointsOf(values(feet)), 0);
+  const Points on = positionsOf(solid_, feet), images = imagesOf(feet, false);
   Points out;
   for (std::size_t i = 0; i < charges.size(); ++i)
-    if (norm(exact[i] - on[i]) <= kExact * distance) out.push_back(charges[i]);
+    if (norm(images[i] - on[i]) <= kExact * distance) out.push_back(charges[i]);
   return out;
 }
 
 AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit,
-                                         const std::optional<Mending>& mending) {
+                                         const std::optional<Mending>& mending, bool exact) {
   AdaptiveProblemSettings s;
   s.seed = settings_.seed;
-  // Columns: the point of the source, its way, and where it should be.
-  std::vector<Points> columns{surface_.positions, onSource(ways, surface_.vertices)};
+  std::vector<Points> columns{onSource(ways, surface_.vertices)};
   if (mending) columns.push_back(onSource(mending->from, surface_.vertices));
-  const auto values = [solid = solid_, columns](const std::vector<SurfacePoint>& places) {
-    std::vector<Matrix> parts;
-    for (const Points& column : columns) parts.push_back(interpolated(column, solid, places));
+  // Columns: where it is, its way, and where it should be.
+  const auto values = [this, columns, exact](const std::vector<SurfacePoint>& places) {
+    std::vector<Points> parts{imagesOf(places, exact)};
+    for (const Points& column : columns) parts.push_back(interpolated(column, solid_, places));
     return beside(parts);
   };
   AdaptiveProblem out = adaptiveProblem(solid_, values, unit, s);
-  const auto carry = [this, mending](const BoundarySamples& samples) {
-    const Points now = carried(pointsOf(samples.values), 0);
+  const auto carry = [mending](const BoundarySamples& samples) {
+    const Points now = pointsOf(samples.values);
     Points way = pointsOf(samples.values, 3);
     if (mending) way = mended(std::move(way), now, pointsOf(samples.values, 6), *mending);
     return samplesFrom(now, way);
   };
   if (!steps_.empty())
-    out.placeSources = [this, values, diagonal = out.diagonal, place = out.placeSources](
+    out.placeSources = [this, diagonal = out.diagonal, place = out.placeSources](
                            const PlacementRequest& request, double distance) {
-      return known(place(request, distance), distance * diagonal, values);
+      return known(place(request, distance), distance * diagonal);
     };
   out.placeCollocation = [carry, place = out.placeCollocation](const PlacementRequest& request) {
     return carry(place(request));

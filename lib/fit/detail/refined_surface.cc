@@ -11,9 +11,6 @@ namespace {
 
 using Corner = std::array<double, 3>;
 
-// Where an edge is looked at: one that is bent like an S is straight in its middle.
-constexpr std::array<double, 3> kAlong{0.5, 0.25, 0.75};
-
 Corner between(const Corner& a, const Corner& b, double t) {
   return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
 }
@@ -41,7 +38,7 @@ Edges unknownEdges(const RefinedSurface& surface, const EdgeImages& known) {
       if (!seen.insert(keyOf(ends[0], ends[1])).second || known.count(ends) > 0) continue;
       const RefinedSurface::Part& part = surface.parts[t];
       out.ends.push_back(ends);
-      for (const double along : kAlong)
+      for (const double along : kAlongEdge)
         out.places.push_back({part.triangle, between(part.corners[from], part.corners[to], along)});
     }
   return out;
@@ -113,8 +110,8 @@ bool isBent(const RefinedSurface& surface, const Points& images, const EdgeImage
   const auto [a, b] = ends;
   if (!(norm(surface.positions[b] - surface.positions[a]) > chord)) return false;
   double bent = 0;
-  for (std::size_t k = 0; k < kAlong.size(); ++k)
-    bent = std::max(bent, norm(on[k] - (images[a] + kAlong[k] * (images[b] - images[a]))));
+  for (std::size_t k = 0; k < kAlongEdge.size(); ++k)
+    bent = std::max(bent, norm(on[k] - (images[a] + kAlongEdge[k] * (images[b] - images[a]))));
   return bent > chord;
 }
 
@@ -160,7 +157,7 @@ class Splitting {
       return false;
     const RefinedSurface::Part& part = surface_.parts[t];
     surface_.vertices.push_back(
-        {part.triangle, between(part.corners[e], part.corners[next], kAlong[0])});
+        {part.triangle, between(part.corners[e], part.corners[next], kAlongEdge[0])});
     surface_.positions.push_back(0.5 * (surface_.positions[a] + surface_.positions[b]));
     const auto known = known_.find({std::min(a, b), std::max(a, b)});
     images_.push_back(known->second[0]);

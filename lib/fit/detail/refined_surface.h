@@ -27,7 +27,11 @@ struct RefinedSurface {
   std::vector<Part> parts;
 };
 
-// Images of three places along each edge that was looked at and left whole, by its vertices, the
+// Where an edge is looked at, from its lesser vertex on: one that is bent like an S is straight in
+// its middle.
+constexpr std::array<double, 3> kAlongEdge{0.5, 0.25, 0.75};
+
+// Images of these places along each edge that was looked at and left whole, by its vertices, the
 // lesser first. Moved along with the images of the vertices they spare a refinement that goes on
 // from there the way from the mesh to them.
 using EdgeImages = std::map<std::array<int, 2>, std::array<Vec3, 3>>;

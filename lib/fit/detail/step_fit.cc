@@ -230,7 +230,7 @@ class StepFitter {
         return foldedShare(inside.of(field).determinants, 1) <=
                allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
-    AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_, mending), s);
+    AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_, mending, last), s);
     if (fit.end == AdaptiveEnd::maxSources && s.maxSources < settings_.maxSources)
       fit.end = AdaptiveEnd::noGain;
     MappedPoints ends = inside.of(fit.field);

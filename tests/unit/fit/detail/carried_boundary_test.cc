@@ -97,6 +97,30 @@ using CarriedRelease = Carried;
 
 // The mesh about the image is coarse: where it lies within the image, charges as near to it as it
 // is off would stand inside.
+// Two steps, not exact: within the chord of the exact ones, which every triangle's edges keep to.
+TEST_F(Carried, PointsToFitToMayBeNearlyExact) {
+  CarriedBoundary boundary(solid, settings);
+  boundary.advance(bending({0.5, 0, 0}, 0.4), false);
+  boundary.advance(bending({0, 0.3, 0}, -0.2), false);
+  PlacementRequest request;
+  request.spacing = 0.05;
+  request.reach = 0.1;
+  request.most = 5000;
+  const auto points = [&](bool exact) {
+    const AdaptiveProblem problem = boundary.problem(ways({0, 0, 1}), solid.diagonal(), {}, exact);
+    return problem.placeCollocation(request).points;
+  };
+  const Points exact = points(true), near = points(false);
+  ASSERT_EQ(exact.size(), near.size());
+  ASSERT_GT(exact.size(), 100u);
+  std::vector<double> off;
+  for (std::size_t i = 0; i < exact.size(); ++i) off.push_back(norm(near[i] - exact[i]));
+  std::sort(off.begin(), off.end());
+  EXPECT_LT(off.back(), settings.chord);
+  EXPECT_LT(off[off.size() / 2], 0.1 * settings.chord);
+  EXPECT_GT(off.back(), 10 * settings.accuracy);
+}
+
 TEST_F(CarriedRelease, NoChargeStandsInsideTheExactImage) {
   settings.chord = 10;
   const Solid coarse(shapes::icosphere(1));
