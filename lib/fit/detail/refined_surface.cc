@@ -35,7 +35,7 @@ Edges unknownEdges(const RefinedSurface& surface, const EdgeImages& known) {
       int from = e, to = (e + 1) % 3;
       if (corners[from] > corners[to]) std::swap(from, to);
       const std::array<int, 2> ends{corners[from], corners[to]};
-      if (!seen.insert(keyOf(ends[0], ends[1])).second || known.count(ends) > 0) continue;
+      if (known.count(ends) > 0 || !seen.insert(keyOf(ends[0], ends[1])).second) continue;
       const RefinedSurface::Part& part = surface.parts[t];
       out.ends.push_back(ends);
       for (const double along : kAlongEdge)

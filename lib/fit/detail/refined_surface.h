@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
 #include "innermap/mesh/mesh.h"
@@ -34,7 +35,14 @@ constexpr std::array<double, 3> kAlongEdge{0.5, 0.25, 0.75};
 // Images of these places along each edge that was looked at and left whole, by its vertices, the
 // lesser first. Moved along with the images of the vertices they spare a refinement that goes on
 // from there the way from the mesh to them.
-using EdgeImages = std::map<std::array<int, 2>, std::array<Vec3, 3>>;
+struct EdgeHash {
+  std::size_t operator()(const std::array<int, 2>& edge) const {
+    return std::hash<std::uint64_t>()(static_cast<std::uint64_t>(edge[0]) << 32 ^
+                                      static_cast<std::uint64_t>(edge[1])) *
+           0x9e3779b97f4a7c15u;
+  }
+};
+using EdgeImages = std::unordered_map<std::array<int, 2>, std::array<Vec3, 3>, EdgeHash>;
 
 using PlacesToPoints = std::function<Points(const std::vector<SurfacePoint>&)>;
 
