@@ -18,8 +18,9 @@
 namespace innermap {
 namespace {
 
-constexpr double kClearance = 0.97;   // of the distance
-constexpr double kAlongNormal = 0.7;  // share of candidates; the others go over convex edges
+constexpr double kClearance = 0.97;  // of the distance
+// Share of candidates; the others go over edges, or in creases.
+constexpr double kAlongNormal = 0.7;
 // Candidates are thrown in parts, so many for each point that has room in an empty patch, until
 // hardly any of so many parts is taken: of what there is, or of the candidates.
 constexpr int kParts = 4, kMostParts = 400;

@@ -130,6 +130,10 @@ void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
 
 Points CarriedBoundary::imagesOf(const std::vector<SurfacePoint>& places, bool exact) const {
   if (steps_.empty()) return positionsOf(solid_, places);
+  const auto throughSteps = [&](const std::vector<SurfacePoint>& some) {
+    return carried(interpolated(surface_.positions, solid_, some), 0);
+  };
+  if (exact) return throughSteps(places);
   const BentMesh mesh(solid_, edges_);
   Points out(places.size());
   std::vector<char> known(places.size());
@@ -137,13 +141,13 @@ Points CarriedBoundary::imagesOf(const std::vector<SurfacePoint>& places, bool e
     for (std::size_t i = begin; i < end; ++i) {
       const BentMesh::Place p = mesh.at(places[i]);
       out[i] = p.position;
-      known[i] = !exact && p.bent <= settings_.chord;
+      known[i] = p.bent <= settings_.chord;
     }
   });
   std::vector<SurfacePoint> others;
   for (std::size_t i = 0; i < known.size(); ++i)
     if (!known[i]) others.push_back(places[i]);
-  const Points on = carried(interpolated(surface_.positions, solid_, others), 0);
+  const Points on = throughSteps(others);
   auto next = on.begin();
   for (std::size_t i = 0; i < known.size(); ++i)
     if (!known[i]) out[i] = *next++;

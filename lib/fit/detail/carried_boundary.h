@@ -66,7 +66,8 @@ class CarriedBoundary {
   };
 
   Points carried(Points points, std::size_t firstStep) const;
-  // Of places on solid_.surface(); where not exact, by the bent mesh where that is near the chords.
+  // Of places on solid_.surface(). Where not exact, those of the bent mesh, but for triangles whose
+  // edges are farther off than the chord allows.
   Points imagesOf(const std::vector<SurfacePoint>& places, bool exact) const;
   Points known(const Points& charges, double distance) const;
   void carrySurface();  // by the last step

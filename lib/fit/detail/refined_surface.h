@@ -32,9 +32,6 @@ struct RefinedSurface {
 // its middle.
 constexpr std::array<double, 3> kAlongEdge{0.5, 0.25, 0.75};
 
-// Images of these places along each edge that was looked at and left whole, by its vertices, the
-// lesser first. Moved along with the images of the vertices they spare a refinement that goes on
-// from there the way from the mesh to them.
 struct EdgeHash {
   std::size_t operator()(const std::array<int, 2>& edge) const {
     return std::hash<std::uint64_t>()(static_cast<std::uint64_t>(edge[0]) << 32 ^
@@ -42,6 +39,10 @@ struct EdgeHash {
            0x9e3779b97f4a7c15u;
   }
 };
+
+// Images of these places along each edge that was looked at and left whole, by its vertices, the
+// lesser first. Moved along with the images of the vertices they spare a refinement that goes on
+// from there the way from the mesh to them.
 using EdgeImages = std::unordered_map<std::array<int, 2>, std::array<Vec3, 3>, EdgeHash>;
 
 using PlacesToPoints = std::function<Points(const std::vector<SurfacePoint>&)>;

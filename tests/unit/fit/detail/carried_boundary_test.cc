@@ -95,8 +95,6 @@ TEST_F(Carried, WaysMakeUpForWhatIsOff) {
 
 using CarriedRelease = Carried;
 
-// The mesh about the image is coarse: where it lies within the image, charges as near to it as it
-// is off would stand inside.
 // Two steps, not exact: within the chord of the exact ones, which every triangle's edges keep to.
 TEST_F(Carried, PointsToFitToMayBeNearlyExact) {
   CarriedBoundary boundary(solid, settings);
@@ -121,6 +119,8 @@ TEST_F(Carried, PointsToFitToMayBeNearlyExact) {
   EXPECT_GT(off.back(), 10 * settings.accuracy);
 }
 
+// The mesh about the image is coarse: where it lies within the image, charges as near to it as it
+// is off would stand inside.
 TEST_F(CarriedRelease, NoChargeStandsInsideTheExactImage) {
   settings.chord = 10;
   const Solid coarse(shapes::icosphere(1));
