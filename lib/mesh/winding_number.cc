@@ -1,15 +1,17 @@
 #include "mesh/winding_number.h"
 
 #include <array>
+#include <mutex>
 
 #include "core/pi.h"
 #include "mesh/detail/local_triangles.h"
+#include "mesh/detail/ray_crossings.h"
 
 namespace innermap {
 namespace {
 
 // Clusters farther than this many radii are expanded.
-constexpr double kBeta = 2.1, kRoughBeta = 1.25;
+constexpr double kBeta = 2.1;
 
 // Complex number whose argument is half the solid angle of a triangle seen from the origin
 // (van Oosterom and Strackee 1983).
@@ -167,7 +169,9 @@ struct WindingNumber::Implementation {
   LocalFrame frame;
   Bvh bvh;
   std::vector<LocalTriangles::Corners> triangles;  // in the order of the leaves
-  std::vector<Expansion> expansions;               // one a node
+  bool balanced = false;                           // see isBalanced()
+  mutable std::once_flag expanded;
+  mutable std::vector<Expansion> expansions;  // one a node
 
   Implementation(const Points& vertices, const std::vector<Triangle>& given) {
     const LocalTriangles local(vertices, given);
@@ -175,6 +179,10 @@ struct WindingNumber::Implementation {
     bvh = buildBvh(local.boxes, 4);
     triangles.reserve(bvh.order.size());
     for (const int i : bvh.order) triangles.push_back(local.corners[i]);
+    balanced = local.index.size() == given.size() && isBalanced(given);
+  }
+
+  void expand() const {
     const Points centers = areaCentroids();
     expansions.resize(bvh.nodes.size());
     std::vector<Moments> moments(bvh.nodes.size());
@@ -220,7 +228,7 @@ struct WindingNumber::Implementation {
   }
 
   // Exact radii of leaves; of inner nodes the lesser of what the children and what the box give.
-  void setRadii() {
+  void setRadii() const {
     std::vector<double> radius(bvh.nodes.size(), 0);
     for (std::size_t n = bvh.nodes.size(); n-- > 0;) {
       const Bvh::Node& node = bvh.nodes[n];
@@ -254,9 +262,9 @@ struct WindingNumber::Implementation {
     return {c[0], c[1], c[2]};
   }
 
-  // `narrower`: squared ratio of the opening radius wanted to the one stored.
-  double at(const Vec3& world, float narrower) const {
+  double at(const Vec3& world) const {
     if (bvh.nodes.empty() || !isFinite(world)) return 0;
+    std::call_once(expanded, [&] { expand(); });
     const Vec3 p = frame.toLocal(world);
     AngleSum near;
     double far = 0;
@@ -270,7 +278,7 @@ struct WindingNumber::Implementation {
       const float dy = static_cast<float>(e.center[1] - p.y);
       const float dz = static_cast<float>(e.center[2] - p.z);
       const float r2 = dx * dx + dy * dy + dz * dz;
-      if (r2 > narrower * e.openRadius2) {
+      if (r2 > e.openRadius2) {
         far += e.at(dx, dy, dz, r2);
         continue;
       }
@@ -301,13 +309,14 @@ struct WindingNumber::Implementation {
 WindingNumber::WindingNumber(const Points& vertices, const std::vector<Triangle>& triangles)
     : implementation_(std::make_shared<const Implementation>(vertices, triangles)) {}
 
-double WindingNumber::at(const Vec3& p) const { return implementation_->at(p, 1); }
+double WindingNumber::at(const Vec3& p) const { return implementation_->at(p); }
 
 int WindingNumber::wholeAt(const Vec3& p) const {
-  constexpr float kNarrower = static_cast<float>(kRoughBeta * kRoughBeta / (kBeta * kBeta));
-  double winding = implementation_->at(p, kNarrower);
-  if (std::abs(winding - std::round(winding)) > 0.2) winding = implementation_->at(p, 1);
-  return static_cast<int>(std::lround(winding));
+  const Implementation& i = *implementation_;
+  if (!isFinite(p)) return 0;
+  const std::optional<int> counted =
+      i.balanced ? rayCrossings(i.bvh, i.triangles, i.frame.toLocal(p)) : std::nullopt;
+  return counted ? *counted : static_cast<int>(std::lround(at(p)));
 }
 
 double WindingNumber::exactAt(const Vec3& p) const { return implementation_->exactAt(p); }

@@ -22,8 +22,8 @@ class WindingNumber {
   // Absolute error below 1e-2 (accuracy 2 in the paper's terms); on the surface itself undefined.
   double at(const Vec3& p) const;
 
-  // For closed meshes (as repair() makes them), whose winding numbers are whole: at() rounded, in
-  // about half the time, since a rough expansion tells whole numbers apart.
+  // For closed meshes (as repair() makes them), whose winding numbers are whole: the crossings of a
+  // ray, exact and much cheaper than at(); of other meshes at() rounded.
   int wholeAt(const Vec3& p) const;
 
   // The exact sum of solid angles over all triangles, O(#T).

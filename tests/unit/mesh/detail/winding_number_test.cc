@@ -4,6 +4,7 @@
 
 #include "core/random.h"
 #include "mesh/shapes.h"
+#include "mesh/triangle_tree.h"
 
 namespace innermap {
 namespace {
@@ -93,6 +94,69 @@ TEST(WindingNumber, WholeNumbersOfClosedMeshes) {
     const double exact = winding.exactAt(p);
     ASSERT_NEAR(exact, std::round(exact), 1e-9);
     EXPECT_EQ(winding.wholeAt(p), std::lround(exact));
+  }
+}
+
+// Closed: tetrahedra with corners on a lattice, many of them flat, inside out or of repeated
+// vertices; their faces share edges, planes and corners.
+Mesh latticeTetrahedra(int count, int across, std::uint64_t seed) {
+  const CounterRandom random(seed, 4);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const int first = 4 * i;
+    for (int k = 0; k < 12; k += 3) {
+      const auto coordinate = [&](int a) {
+        return static_cast<double>(random.bits(12 * i + k + a) % (across + 1));
+      };
+      mesh.vertices.push_back({coordinate(0), coordinate(1), coordinate(2)});
+    }
+    for (const Triangle& t : {Triangle{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return mesh;
+}
+
+TEST(WindingNumber, WholeNumbersWhereRaysMeetEdgesAndVertices) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const Mesh mesh = latticeTetrahedra(40, 6, seed);
+    const WindingNumber winding(mesh.vertices, mesh.triangles);
+    const TriangleTree surface(mesh.vertices, mesh.triangles);
+    int met = 0;
+    // Along the axis that rays take, most of these meet an edge or a vertex.
+    for (int i = 0; i < 7 * 7 * 24; ++i) {
+      const Vec3 p{0.25 * (i / 49) + 0.125, static_cast<double>(i / 7 % 7),
+                   static_cast<double>(i % 7)};
+      if (surface.closest(p).distance < 1e-6) continue;
+      ++met;
+      EXPECT_EQ(winding.wholeAt(p), std::lround(winding.exactAt(p)))
+          << p.x << " " << p.y << " " << p.z;
+    }
+    EXPECT_GT(met, 800);
+  }
+}
+
+TEST(WindingNumber, WholeNumbersNextToTheSurface) {
+  const Mesh mesh = shapes::icosphere(5, 1, {3, 2, 1});
+  const WindingNumber winding(mesh.vertices, mesh.triangles);
+  const CounterRandom random(5, 3);
+  for (int i = 0; i < 2000; ++i) {
+    const Triangle& t = mesh.triangles[random.bits(i) % mesh.triangles.size()];
+    const Vec3 m = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
+    const Vec3 out = std::pow(10.0, -1.0 - i % 14) * (m - Vec3{3, 2, 1});
+    EXPECT_EQ(winding.wholeAt(m - out), 1);
+    EXPECT_EQ(winding.wholeAt(m + out), 0);
+  }
+}
+
+TEST(WindingNumber, OfAnOpenMeshRounded) {
+  Mesh mesh = shapes::icosphere(3);
+  mesh.triangles.resize(mesh.triangles.size() - 3);
+  const WindingNumber winding(mesh.vertices, mesh.triangles);
+  const CounterRandom random(6, 1);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = 1.3 * randomPoint(random, i);
+    EXPECT_EQ(winding.wholeAt(p), std::lround(winding.at(p)));
   }
 }
 
