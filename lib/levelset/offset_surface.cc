@@ -186,10 +186,10 @@ double moveToDistance(const Solid& solid, double distance, Vec3& p, double enoug
                       const Worthwhile& worthwhile) {
   Vec3 best = p;
   double bestError = std::numeric_limits<double>::infinity();
+  // Most points are near the distance already: a bound makes the search cheaper.
+  Solid::Closest c = solid.closest(p, 1.2 * distance);
+  if (c.onSurface.triangle < 0) c = solid.closest(p, std::numeric_limits<double>::infinity());
   for (int step = 0; step < 8; ++step) {
-    // Most points are near the distance already: a bound makes the search cheaper.
-    Solid::Closest c = solid.closest(p, 1.2 * distance);
-    if (c.onSurface.triangle < 0) c = solid.closest(p, std::numeric_limits<double>::infinity());
     const double error = std::abs(c.distance - distance);
     if (error < bestError) {
       best = p;
@@ -201,7 +201,8 @@ double moveToDistance(const Solid& solid, double distance, Vec3& p, double enoug
     // The ball about p lies in the one that was free: nothing is nearer than c.position.
     if (c.distance > distance) return 0;
     // c.position is at the distance, so only what is nearer is left to look for.
-    if (!isNearer(solid, p, (1 - enough) * distance)) return enough * distance;
+    c = solid.closest(p, (1 - enough) * distance);
+    if (c.onSurface.triangle < 0) return enough * distance;
   }
   p = best;
   return bestError;

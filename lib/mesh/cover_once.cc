@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/disjoint_sets.h"
 #include "core/orientation.h"
@@ -14,7 +15,6 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kBatch = 1 << 17, kBlock = 1 << 10;
 constexpr char kStage[] = "checking overlaps";
 // Ways from a triangle to the points beside it, of its size.
 constexpr std::array<double, 3> kBeside{1e-2, 1e-4, 1e-7};
@@ -55,27 +55,16 @@ class Cover {
   }
 
   void findMeetings() {
-    std::vector<std::array<int, 2>> pairs;
-    std::vector<CoverCheck> found(kBatch / kBlock + 1);
-    const auto flush = [&] {
-      std::fill(found.begin(), found.end(), CoverCheck{});
-      parallelBlocks(pairs.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-        CoverCheck& block = found[begin / kBlock];
-        for (std::size_t k = begin; k < end; ++k) {
-          const Meeting m =
-              meetingOf(vertices_, triangles_[pairs[k][0]], triangles_[pairs[k][1]], block.exact);
-          block.crossings += m == Meeting::crossing;
-          block.meetings += m == Meeting::undecided;
-        }
-      });
-      for (const CoverCheck& block : found) add(block);
-      pairs.clear();
+    std::vector<CoverCheck> found(TriangleTree::kParts);
+    const auto look = [&](std::size_t part, int i, int j) {
+      CoverCheck& counts = found[part];
+      const Meeting m = meetingOf(vertices_, triangles_[i], triangles_[j], counts.exact);
+      counts.crossings += m == Meeting::crossing;
+      counts.meetings += m == Meeting::undecided;
     };
-    TriangleTree(vertices_, triangles_).overlappingPairs([&](int i, int j) {
-      pairs.push_back({i, j});
-      if (pairs.size() == kBatch) flush();
+    TriangleTree(vertices_, triangles_).overlappingPairs(look, [&] {
+      for (CoverCheck& part : found) add(std::exchange(part, {}));
     });
-    flush();
   }
 
   // A few triangles of each part.

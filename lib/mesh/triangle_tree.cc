@@ -2,10 +2,13 @@
 
 #include <array>
 
+#include "innermap/core/run.h"
 #include "mesh/detail/local_triangles.h"
 
 namespace innermap {
 namespace {
+
+constexpr int kPartTriangles = 128;  // of each of the two nodes of a part, at most
 
 struct Candidate {
   double v = 0, w = 0;  // barycentric coordinates of b and c
@@ -227,8 +230,8 @@ struct TriangleTree::Implementation {
     return pointOf(best, bestIndex);
   }
 
-  void visitLeaves(const Bvh::Node& x, const Bvh::Node& y,
-                   const std::function<void(int, int)>& visit) const {
+  template <typename Visit>
+  void visitLeaves(const Bvh::Node& x, const Bvh::Node& y, const Visit& visit) const {
     const bool same = &x == &y;
     for (int i = x.first; i < x.first + x.count; ++i) {
       for (int j = same ? i + 1 : y.first; j < y.first + y.count; ++j) {
@@ -244,16 +247,21 @@ struct TriangleTree::Implementation {
     }
   }
 
-  void overlappingPairs(const std::function<void(int, int)>& visit) const {
-    if (bvh.nodes.empty()) return;
-    std::vector<std::array<int, 2>> stack{{0, 0}};
+  using NodePair = std::array<int, 2>;
+
+  // Pairs of nodes at or below those two whose boxes overlap, down to where isEnd(node) holds of
+  // both; it must hold of leaves.
+  template <typename IsEnd, typename Visit>
+  void descend(const NodePair& from, const IsEnd& isEnd, const Visit& visit) const {
+    std::vector<NodePair> stack{from};
     while (!stack.empty()) {
-      const auto [i, j] = stack.back();
+      const NodePair pair = stack.back();
       stack.pop_back();
+      const auto [i, j] = pair;
       const Bvh::Node &x = bvh.nodes[i], &y = bvh.nodes[j];
       if (i != j && !x.overlaps(y)) continue;
-      if (x.leaf() && y.leaf()) {
-        visitLeaves(x, y, visit);
+      if (isEnd(i) && isEnd(j)) {
+        visit(pair);
       } else if (i == j) {
         stack.push_back({x.first, x.first + 1});
         stack.push_back({x.first + 1, x.first + 1});
@@ -267,6 +275,42 @@ struct TriangleTree::Implementation {
         stack.push_back({i, y.first});
       }
     }
+  }
+
+  // Triangles below each node.
+  std::vector<int> counts() const {
+    std::vector<int> out(bvh.nodes.size());
+    for (std::size_t n = out.size(); n-- > 0;) {
+      const Bvh::Node& node = bvh.nodes[n];
+      out[n] = node.leaf() ? node.count : out[node.first] + out[node.first + 1];
+    }
+    return out;
+  }
+
+  void overlappingPairs(const PairVisitor& visit, const std::function<void()>& next) const {
+    if (bvh.nodes.empty()) return;
+    const std::vector<int> count = counts();
+    std::vector<NodePair> parts;
+    const auto look = [&] {
+      parallelBlocks(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t part = begin; part < end; ++part)
+          descend(
+              parts[part], [&](int n) { return bvh.nodes[n].leaf(); },
+              [&](const NodePair& leaves) {
+                visitLeaves(bvh.nodes[leaves[0]], bvh.nodes[leaves[1]],
+                            [&](int i, int j) { visit(part, i, j); });
+              });
+      });
+      next();
+      parts.clear();
+    };
+    descend(
+        {0, 0}, [&](int n) { return bvh.nodes[n].leaf() || count[n] <= kPartTriangles; },
+        [&](const NodePair& nodes) {
+          parts.push_back(nodes);
+          if (parts.size() == kParts) look();
+        });
+    look();
   }
 };
 
@@ -293,8 +337,9 @@ ClosestPoint TriangleTree::closest(const Vec3& p, double within, const Part& par
   return implementation_->closest(p, within, part);
 }
 
-void TriangleTree::overlappingPairs(const std::function<void(int, int)>& visit) const {
-  implementation_->overlappingPairs(visit);
+void TriangleTree::overlappingPairs(const PairVisitor& visit,
+                                    const std::function<void()>& next) const {
+  implementation_->overlappingPairs(visit, next);
 }
 
 std::size_t TriangleTree::size() const { return implementation_->size; }

@@ -46,8 +46,14 @@ class TriangleTree {
   // The same as closest() of all, if the part has that one.
   ClosestPoint closest(const Vec3& p, double within, const Part& part) const;
 
-  // Calls visit(i, j), i < j, for each pair of triangles whose boxes overlap.
-  void overlappingPairs(const std::function<void(int, int)>& visit) const;
+  // Calls visit(part, i, j), i < j, for each pair of triangles whose boxes overlap. Several threads
+  // visit at once, each a part of its own below kParts; next() comes between times, when nothing is
+  // visited, to collect what the parts hold, and at the end. By parts, and within one, pairs come
+  // in an order that does not depend on the number of threads; a part has at most some 16,000
+  // between two next().
+  static constexpr std::size_t kParts = 256;
+  using PairVisitor = std::function<void(std::size_t part, int i, int j)>;
+  void overlappingPairs(const PairVisitor& visit, const std::function<void()>& next) const;
 
   std::size_t size() const;
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/random.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -195,7 +196,7 @@ TEST(TriangleTree, ScaleAndPlaceDoNotMatter) {
 TEST(TriangleTree, NothingToFind) {
   const TriangleTree none({}, {});
   EXPECT_EQ(none.closest({1, 2, 3}).address.triangle, -1);
-  none.overlappingPairs([](int, int) { FAIL(); });
+  none.overlappingPairs([](std::size_t, int, int) { FAIL(); }, [] { FAIL(); });
   const Mesh mesh = shapes::icosphere(1);
   const TriangleTree tree(mesh.vertices, mesh.triangles);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -203,19 +204,39 @@ TEST(TriangleTree, NothingToFind) {
   EXPECT_EQ(tree.closest({2, 0, 0}, 0).address.triangle, -1);
 }
 
+// In their order.
+std::vector<std::pair<int, int>> overlappingPairs(const Mesh& mesh) {
+  std::vector<std::pair<int, int>> out;
+  std::vector<std::vector<std::pair<int, int>>> parts(TriangleTree::kParts);
+  TriangleTree(mesh.vertices, mesh.triangles)
+      .overlappingPairs(
+          [&](std::size_t part, int i, int j) {
+            parts.at(part).push_back({i, j});
+          },
+          [&] {
+            for (auto& part : parts) {
+              out.insert(out.end(), part.begin(), part.end());
+              part.clear();
+            }
+          });
+  return out;
+}
+
+TEST(TriangleTree, OverlappingPairsComeInOneOrderForAnyNumberOfThreads) {
+  const Mesh mesh = shapes::soup(20000, 0.06, 13);
+  const std::vector<std::pair<int, int>> all = overlappingPairs(mesh);
+  EXPECT_GT(all.size(), 20000u);
+  const ThreadLimit one(1);
+  EXPECT_EQ(overlappingPairs(mesh), all);
+}
+
 TEST(TriangleTree, OverlappingPairsAreAllPairsOfOverlappingBoxes) {
   for (const std::uint64_t seed : {11, 12}) {
     SCOPED_TRACE(seed);
     const Mesh mesh = shapes::soup(300, 0.15, seed);
-    const TriangleTree tree(mesh.vertices, mesh.triangles);
-    std::set<std::pair<int, int>> found;
-    std::size_t calls = 0;
-    tree.overlappingPairs([&](int i, int j) {
-      EXPECT_LT(i, j);
-      found.insert({i, j});
-      ++calls;
-    });
-    EXPECT_EQ(calls, found.size());
+    const std::vector<std::pair<int, int>> all = overlappingPairs(mesh);
+    const std::set<std::pair<int, int>> found(all.begin(), all.end());
+    EXPECT_EQ(all.size(), found.size());
     std::set<std::pair<int, int>> expected;
     std::vector<Box3> boxes(300);
     for (int t = 0; t < 300; ++t)
