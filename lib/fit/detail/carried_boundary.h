@@ -70,6 +70,7 @@ class CarriedBoundary {
   // edges are farther off than the chord allows.
   Points imagesOf(const std::vector<SurfacePoint>& places, bool exact) const;
   Points known(const Points& charges, double distance) const;
+  std::vector<std::size_t> nearImages(const Points& charges, double than) const;
   void carrySurface();  // by the last step
   // Random places on the source's repaired mesh, uniform by its area; those of draw 0 are
   // freshSamples'.

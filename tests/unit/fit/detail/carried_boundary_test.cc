@@ -141,6 +141,39 @@ TEST_F(CarriedRelease, NoChargeStandsInsideTheExactImage) {
   }
 }
 
+// The mesh about the image knows its edges; a bump in the middle of a triangle only points that
+// errors are measured at tell of.
+TEST_F(Carried, NoChargeTouchesABumpBetweenTheEdges) {
+  settings.chord = 0.01;
+  const Solid coarse(shapes::icosphere(1));
+  const auto& [i, j, k] = coarse.surface().triangles[0];
+  const Points& v = coarse.surface().vertices;
+  const Vec3 middle = (v[i] + v[j] + v[k]) / 3, up = middle / norm(middle);
+  Matrix weights(1, 3);
+  for (int a = 0; a < 3; ++a) weights(0, static_cast<std::size_t>(a)) = 6e-4 * up[a];
+  const HarmonicField bump({middle + 0.02 * up}, weights, test::affineOf(test::kIdentity, {}));
+  CarriedBoundary boundary(coarse, settings);
+  boundary.advance(HarmonicMap(bump), false);
+  const Points still(coarse.repaired().mesh.vertices.size());
+  const AdaptiveProblem problem = boundary.problem(still, coarse.diagonal());
+  const double away = 0.034;
+  PlacementRequest request;
+  request.marks = {middle};
+  request.spacing = 0.2 * away / coarse.diagonal();
+  request.reach = 3 * away / coarse.diagonal();
+  request.most = 100000;
+  const auto placed = [&] { return problem.placeSources(request, away / coarse.diagonal()); };
+  const Points before = placed(), images = problem.draw(50000, 1).points;
+  const auto nearest = [&](const Points& charges) {
+    double out = 1;
+    for (const Vec3& charge : charges)
+      for (const Vec3& p : images) out = std::min(out, norm(p - charge));
+    return out;
+  };
+  EXPECT_LT(nearest(before), 0.4 * away);
+  EXPECT_GE(nearest(placed()), 0.4 * away);
+}
+
 // Steps whose boundary values are those of harmonic polynomials: what they compose to is known
 // inside. With the error e of the whole and e1, e2 of what the steps before the last leave, the
 // maximum principle in each step's own solid bounds the error inside by e + 2 L (e1 + e2), L the
