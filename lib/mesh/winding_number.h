@@ -16,6 +16,7 @@ namespace innermap {
 // Immutable after construction; safe from any number of threads.
 class WindingNumber {
  public:
+  WindingNumber() : WindingNumber({}, {}) {}  // 0 everywhere
   WindingNumber(const Points& vertices, const std::vector<Triangle>& triangles);
 
   // About 1 inside a closed outward mesh, 0 outside, the number of covers where parts overlap.

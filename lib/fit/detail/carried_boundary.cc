@@ -180,7 +180,7 @@ Points CarriedBoundary::known(const Points& charges, double distance) const {
 
 // Indices of the charges that an exact image of this step's draws is nearer to.
 std::vector<std::size_t> CarriedBoundary::nearImages(const Points& charges, double than) const {
-  const PointGrid grid(charges, 2 * than);
+  const PointGrid grid(charges, 4 * than);
   std::vector<std::size_t> out;
   for (const auto& [key, draw] : draws_) {
     if (draw.steps != steps_.size()) continue;

@@ -26,12 +26,14 @@ struct Edges {
   std::vector<SurfacePoint> places;  // three an edge
 };
 
-Edges unknownEdges(const RefinedSurface& surface, const EdgeImages& known) {
+// Of triangles with a vertex from firstNew on: all new edges end at one.
+Edges unknownEdges(const RefinedSurface& surface, const EdgeImages& known, int firstNew) {
   Edges out;
   std::unordered_set<std::uint64_t> seen;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const Triangle& corners = surface.triangles[t];
+    if (*std::max_element(corners.begin(), corners.end()) < firstNew) continue;
     for (int e = 0; e < 3; ++e) {
-      const Triangle& corners = surface.triangles[t];
       int from = e, to = (e + 1) % 3;
       if (corners[from] > corners[to]) std::swap(from, to);
       const std::array<int, 2> ends{corners[from], corners[to]};
@@ -41,6 +43,7 @@ Edges unknownEdges(const RefinedSurface& surface, const EdgeImages& known) {
       for (const double along : kAlongEdge)
         out.places.push_back({part.triangle, between(part.corners[from], part.corners[to], along)});
     }
+  }
   return out;
 }
 
@@ -62,18 +65,52 @@ int longestEdge(const RefinedSurface& surface, const Triangle& t) {
   return out;
 }
 
-using Middles = std::unordered_map<std::uint64_t, int>;  // new vertices, by their edge
+// New vertices, by the edges whose middles they are.
+class Middles {
+ public:
+  bool empty() const { return byEdge_.empty(); }
 
-int middleOf(const Middles& middles, const Triangle& t, int e) {
-  const auto found = middles.find(keyOf(t[e], t[(e + 1) % 3]));
-  return found == middles.end() ? -1 : found->second;
-}
+  // False where it is there already.
+  bool add(int a, int b, int vertex) {
+    const auto size = static_cast<std::size_t>(std::max(a, b)) + 1;
+    if (ends_.size() < size) ends_.resize(std::max(size, 2 * ends_.size()));
+    ends_[a] = ends_[b] = true;
+    return byEdge_.emplace(keyOf(a, b), vertex).second;
+  }
+
+  // -1 of an edge that stays whole.
+  int of(int a, int b) const {
+    // Of most edges, at less cost.
+    if (static_cast<std::size_t>(std::max(a, b)) >= ends_.size() || !ends_[a] || !ends_[b])
+      return -1;
+    const auto found = byEdge_.find(keyOf(a, b));
+    return found == byEdge_.end() ? -1 : found->second;
+  }
+
+  int of(const Triangle& t, int e) const { return of(t[e], t[(e + 1) % 3]); }
+
+  bool any(const Triangle& t) const { return of(t, 0) >= 0 || of(t, 1) >= 0 || of(t, 2) >= 0; }
+
+ private:
+  std::unordered_map<std::uint64_t, int> byEdge_;
+  std::vector<char> ends_;  // whether a vertex is one of such an edge
+};
+
+struct Triangulation {
+  std::vector<Triangle> triangles;
+  std::vector<RefinedSurface::Part> parts;
+};
 
 // Cut from the middle of its longest edge to the corner across, and the halves where their other
 // edge is split too.
-void split(const RefinedSurface& from, std::size_t t, const Middles& middles, RefinedSurface& to) {
+void split(const RefinedSurface& from, std::size_t t, const Middles& middles, Triangulation& to) {
   const Triangle& corners = from.triangles[t];
   const RefinedSurface::Part& part = from.parts[t];
+  if (!middles.any(corners)) {
+    to.triangles.push_back(corners);
+    to.parts.push_back(part);
+    return;
+  }
   const int a = longestEdge(from, corners), b = (a + 1) % 3, c = (a + 2) % 3;
   struct Point {
     int vertex;
@@ -85,11 +122,9 @@ void split(const RefinedSurface& from, std::size_t t, const Middles& middles, Re
   };
   const auto corner = [&](int k) { return Point{corners[k], part.corners[k]}; };
   const auto middle = [&](int e) {
-    return Point{middleOf(middles, corners, e),
-                 between(part.corners[e], part.corners[(e + 1) % 3], 0.5)};
+    return Point{middles.of(corners, e), between(part.corners[e], part.corners[(e + 1) % 3], 0.5)};
   };
   const Point m = middle(a), n = middle(b), o = middle(c);
-  if (m.vertex < 0) return add(corner(0), corner(1), corner(2));
   if (n.vertex < 0) {
     add(m, corner(b), corner(c));
   } else {
@@ -104,9 +139,8 @@ void split(const RefinedSurface& from, std::size_t t, const Middles& middles, Re
   }
 }
 
-bool isBent(const RefinedSurface& surface, const Points& images, const EdgeImages::value_type& edge,
-            double chord) {
-  const auto& [ends, on] = edge;
+bool isBent(const RefinedSurface& surface, const Points& images, const std::array<int, 2>& ends,
+            const std::array<Vec3, 3>& on, double chord) {
   const auto [a, b] = ends;
   if (!(norm(surface.positions[b] - surface.positions[a]) > chord)) return false;
   double bent = 0;
@@ -122,15 +156,21 @@ class Splitting {
   Splitting(RefinedSurface& surface, Points& images, EdgeImages& known)
       : surface_(surface), images_(images), known_(known) {}
 
-  void splitBentEdges(double chord) {
-    std::unordered_set<std::uint64_t> bent;
-    for (const auto& edge : known_)
-      if (isBent(surface_, images_, edge, chord)) bent.insert(keyOf(edge.first[0], edge.first[1]));
-    for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
-      for (int e = 0; e < 3; ++e) {
-        const Triangle& corners = surface_.triangles[t];
-        if (bent.count(keyOf(corners[e], corners[(e + 1) % 3])) > 0) add(t, e);
-      }
+  // Of all edges in the first round; then of those that were looked at last.
+  void splitBentEdges(bool firstRound, const std::vector<std::array<int, 2>>& last, double chord) {
+    Middles bent;
+    const auto look = [&](const std::array<int, 2>& ends, const std::array<Vec3, 3>& on) {
+      if (isBent(surface_, images_, ends, on, chord)) bent.add(ends[0], ends[1], 0);
+    };
+    if (firstRound)
+      for (const auto& [ends, on] : known_) look(ends, on);
+    else
+      for (const auto& ends : last) look(ends, known_.at(ends));
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      const Triangle& corners = surface_.triangles[t];
+      for (int e = 0; e < 3; ++e)
+        if (bent.of(corners, e) >= 0) add(t, e);
+    }
   }
 
   // Where an edge of a triangle is split, its longest one is too.
@@ -139,9 +179,7 @@ class Splitting {
       more = false;
       for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
         const Triangle& corners = surface_.triangles[t];
-        const bool any = middleOf(middles_, corners, 0) >= 0 ||
-                         middleOf(middles_, corners, 1) >= 0 || middleOf(middles_, corners, 2) >= 0;
-        if (any && add(t, longestEdge(surface_, corners))) more = true;
+        if (middles_.any(corners) && add(t, longestEdge(surface_, corners))) more = true;
       }
     }
   }
@@ -153,8 +191,7 @@ class Splitting {
   bool add(std::size_t t, int e) {
     const Triangle& corners = surface_.triangles[t];
     const int next = (e + 1) % 3, a = corners[e], b = corners[next];
-    if (!middles_.emplace(keyOf(a, b), static_cast<int>(surface_.vertices.size())).second)
-      return false;
+    if (!middles_.add(a, b, static_cast<int>(surface_.vertices.size()))) return false;
     const RefinedSurface::Part& part = surface_.parts[t];
     surface_.vertices.push_back(
         {part.triangle, between(part.corners[e], part.corners[next], kAlongEdge[0])});
@@ -184,18 +221,21 @@ RefinedSurface::RefinedSurface(const Mesh& mesh)
 
 void refine(RefinedSurface& surface, Points& images, EdgeImages& edges,
             const PlacesToPoints& imagesOf, double chord, std::size_t most) {
+  int firstNew = 0;  // vertex, of the last round
   while (surface.triangles.size() < most) {
-    lookAt(unknownEdges(surface, edges), imagesOf, edges);
+    const Edges unknown = unknownEdges(surface, edges, firstNew);
+    lookAt(unknown, imagesOf, edges);
     Splitting splitting(surface, images, edges);
-    splitting.splitBentEdges(chord);
+    const auto before = static_cast<int>(surface.vertices.size());
+    splitting.splitBentEdges(firstNew == 0, unknown.ends, chord);
     if (splitting.middles().empty()) return;
     splitting.splitLongestEdges();
-    RefinedSurface next = surface;
-    next.triangles.clear();
-    next.parts.clear();
+    firstNew = before;
+    Triangulation next;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       split(surface, t, splitting.middles(), next);
-    surface = std::move(next);
+    surface.triangles = std::move(next.triangles);
+    surface.parts = std::move(next.parts);
   }
 }
 

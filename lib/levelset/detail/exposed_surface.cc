@@ -43,7 +43,7 @@ std::vector<std::vector<int>> patchesOf(const std::vector<Triangle>& triangles,
 
 struct Work {
   const Mesh& mesh;
-  Points local;  // about the box's centre, so that offsets keep their digits far from the origin
+  Points local;  // about the box's centre
   double diagonal;
   WindingNumber winding;
   std::vector<Side> sides;                 // of whole triangles
@@ -266,6 +266,8 @@ ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize) {
   classifyPieces(work, partners);
 
   ExposedSurface result;
+  result.winding = work.winding;
+  result.center = center;
   std::vector<char> dropped(mesh.triangles.size(), 0);
   dropDoubles(work, result, dropped);
   bool anyExposed = false;

@@ -6,6 +6,7 @@
 
 #include "innermap/mesh/mesh.h"
 #include "levelset/detail/piece_splitting.h"
+#include "mesh/winding_number.h"
 
 namespace innermap {
 
@@ -17,6 +18,9 @@ struct ExposedSurface {
   double gap = 0;            // longest edge of a piece that a cut runs through, world units
   double doubledArea = 0;    // of sheets kept although another lies on them, world units squared
   double negativeShare = 0;  // of the mesh's area: bounds regions of winding number below 0
+  // Of the mesh about its box's center, where points next to its triangles keep their digits.
+  WindingNumber winding;
+  Vec3 center;
 };
 
 // `mesh` has whole winding numbers, as repair() makes them. pieceSize is a fraction of the

@@ -7,8 +7,7 @@ SolidBody::SolidBody(RepairedMesh mesh, ExposedSurface surface)
       exposed_(std::move(surface)),
       box_(boundingBox(this->surface())),
       area_(surfaceArea(this->surface())),
-      tree_(this->surface().vertices, this->surface().triangles),
-      winding_(repaired_.mesh.vertices, repaired_.mesh.triangles) {}
+      tree_(this->surface().vertices, this->surface().triangles) {}
 
 bool SolidBody::closedWellEnough() const {
   return exposed_.doubledArea <= 1e-4 * area_ && exposed_.gap <= box_.diagonal() / 64;

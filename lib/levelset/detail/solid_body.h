@@ -6,7 +6,6 @@
 #include "innermap/mesh/mesh.h"
 #include "levelset/detail/exposed_surface.h"
 #include "mesh/triangle_tree.h"
-#include "mesh/winding_number.h"
 
 namespace innermap {
 
@@ -21,7 +20,7 @@ class SolidBody {
   double area() const { return area_; }     // of surface()
   double gap() const { return exposed_.gap; }
 
-  bool inside(const Vec3& p) const { return winding_.wholeAt(p) > 0; }
+  bool inside(const Vec3& p) const { return exposed_.winding.wholeAt(p - exposed_.center) > 0; }
   // Triangle -1 when farther than `within`.
   ClosestPoint closest(const Vec3& p, double within) const { return tree_.closest(p, within); }
 
@@ -37,7 +36,6 @@ class SolidBody {
   Box3 box_;
   double area_ = 0;
   TriangleTree tree_;
-  WindingNumber winding_;
 };
 
 }  // namespace innermap

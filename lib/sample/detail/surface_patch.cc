@@ -6,9 +6,17 @@
 #include "innermap/core/run.h"
 
 namespace innermap {
+namespace {
+
+constexpr double kCoarser = 4;
+constexpr std::size_t kMostGrids = 4;
+
+}  // namespace
 
 SurfacePatch::SurfacePatch(const Mesh& surface, const Points& marks, double reach, double fine)
-    : surface_(surface), marks_(marks, 2 * reach), reach_(reach), fine_(fine), all_(marks.empty()) {
+    : surface_(surface), reach_(reach), fine_(fine), all_(marks.empty()) {
+  for (double cell = 2 * reach; !all_ && marks_.size() < kMostGrids; cell *= kCoarser)
+    marks_.emplace_back(marks, cell);
   constexpr std::size_t kBlock = 1024;
   constexpr Corners kWhole{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   const std::size_t count = surface.triangles.size();
@@ -29,6 +37,13 @@ SurfacePatch::SurfacePatch(const Mesh& surface, const Points& marks, double reac
     }
 }
 
+bool SurfacePatch::anyMarkNearer(const Vec3& p, double radius) const {
+  std::size_t grid = 0;
+  for (double cell = 2 * reach_; cell < radius && grid + 1 < marks_.size(); cell *= kCoarser)
+    ++grid;
+  return marks_[grid].anyNearer(p, radius);
+}
+
 SurfacePatch::Barycentric SurfacePatch::at(const Corners& corners, const Barycentric& inside) {
   Barycentric out{};
   for (std::size_t c = 0; c < 3; ++c)
@@ -41,8 +56,8 @@ void SurfacePatch::addNear(int triangle, const Corners& corners, double half,
   Vec3 p[3];
   Box3 box;
   for (std::size_t c = 0; c < 3; ++c) box.add(p[c] = positionOf(surface_, {triangle, corners[c]}));
-  if (!all_ && !marks_.anyNearer(box.center(), reach_ + half)) return;
-  if (all_ || 2 * half <= fine_ || marks_.anyNearer(box.center(), std::max(0.0, reach_ - half))) {
+  if (!all_ && !anyMarkNearer(box.center(), reach_ + half)) return;
+  if (all_ || 2 * half <= fine_ || anyMarkNearer(box.center(), std::max(0.0, reach_ - half))) {
     parts.push_back({triangle, corners, norm(cross(p[1] - p[0], p[2] - p[0]))});
     return;
   }

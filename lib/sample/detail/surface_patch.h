@@ -24,7 +24,7 @@ class SurfacePatch {
   // for u, v uniform in [0, 1).
   SurfacePoint sample(double share, double u, double v) const;
 
-  bool holds(const Vec3& p) const { return all_ || marks_.anyNearer(p, reach_); }
+  bool holds(const Vec3& p) const { return all_ || anyMarkNearer(p, reach_); }
 
  private:
   using Barycentric = std::array<double, 3>;
@@ -35,13 +35,16 @@ class SurfacePatch {
     double area;  // twice
   };
 
+  bool anyMarkNearer(const Vec3& p, double radius) const;
   static Barycentric at(const Corners& corners, const Barycentric& inside);
   // half: of the diagonal of the part's box; handed down, as rounding may keep a box from
   // shrinking.
   void addNear(int triangle, const Corners& corners, double half, std::vector<Part>& parts) const;
 
   const Mesh& surface_;
-  const PointGrid marks_;
+  // The marks, in cells each kCoarser times as wide as those before: large triangles are far from
+  // most marks, and would be looked for in thousands of small cells.
+  std::vector<PointGrid> marks_;
   const double reach_, fine_;
   const bool all_;
   std::vector<Part> parts_;
