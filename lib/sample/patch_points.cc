@@ -134,9 +134,9 @@ bool isWithinTriangle(const SurfacePoint& p) {
 
 // Moves p to the distance over an edge, or in a crease; false where it comes to stand over one
 // triangle (along its normal there are candidates enough), inside, or where it is not free. What is
-// inside after the first move stays so: in creases that were four of five (cheburashka-spikes onto
-// homer-bend). Without those in creases the largest error of a horse in another pose was half as
-// large again.
+// inside after the first move is left there, as it seldom comes out again: of the candidates in
+// creases four of five ended inside (cheburashka-spikes onto homer-bend). Without those in creases
+// the largest error of a horse in another pose was half as large again.
 bool moveOverEdge(const Solid& solid, double away, const std::function<bool(const Vec3&)>& free,
                   Vec3& p) {
   constexpr double kEnough = 1 - kClearance;

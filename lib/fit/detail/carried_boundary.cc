@@ -158,9 +158,9 @@ Points CarriedBoundary::imagesOf(const std::vector<SurfacePoint>& places, bool e
 
 // Those that stand where the mesh about the present solid is as good as exact at their distance
 // from it: elsewhere a charge could touch the images, or stand inside of them. The exact images
-// that errors were measured at tell of bumps between the edges that the mesh knows: one of 2e-3 of
-// the diagonal, that a step had left, stood a fourth of the distance from a charge of the next, and
-// points of it ended three diagonals off.
+// that errors were measured at tell of bumps between the edges that the mesh knows: one that a step
+// had left came to within 0.28 of the distance of a charge of the next, and points of it ended
+// three diagonals off (cheburashka-bend onto spot-spikes).
 Points CarriedBoundary::known(const Points& charges, double distance) const {
   std::vector<char> good(charges.size());
   std::vector<SurfacePoint> feet(charges.size());

@@ -9,7 +9,7 @@ namespace innermap {
 namespace {
 
 constexpr double kCoarser = 4;
-constexpr std::size_t kMostGrids = 4;
+constexpr std::size_t kMostGrids = 4;  // cells up to 64 times as wide
 
 }  // namespace
 

@@ -97,8 +97,8 @@ TEST(WindingNumber, WholeNumbersOfClosedMeshes) {
   }
 }
 
-// Closed: tetrahedra with corners on a lattice, many of them flat, inside out or of repeated
-// vertices; their faces share edges, planes and corners.
+// Closed: tetrahedra with corners on a lattice, some of them flat or inside out; their faces share
+// planes, lines and corners.
 Mesh latticeTetrahedra(int count, int across, std::uint64_t seed) {
   const CounterRandom random(seed, 4);
   Mesh mesh;
