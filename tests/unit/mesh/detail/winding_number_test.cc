@@ -125,8 +125,10 @@ TEST(WindingNumber, WholeNumbersWhereRaysMeetEdgesAndVertices) {
     int met = 0;
     // Along the axis that rays take, most of these meet an edge or a vertex.
     for (int i = 0; i < 7 * 7 * 24; ++i) {
-      const Vec3 p{0.25 * (i / 49) + 0.125, static_cast<double>(i / 7 % 7),
-                   static_cast<double>(i % 7)};
+      const int x = i / 49;
+      const int y = i / 7 % 7;
+      const int z = i % 7;
+      const Vec3 p{0.25 * x + 0.125, static_cast<double>(y), static_cast<double>(z)};
       if (surface.closest(p).distance < 1e-6) continue;
       ++met;
       EXPECT_EQ(winding.wholeAt(p), std::lround(winding.exactAt(p)))
