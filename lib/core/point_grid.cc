@@ -19,7 +19,8 @@ std::uint64_t keyOf(std::int64_t x, std::int64_t y, std::int64_t z) {
 
 }  // namespace
 
-PointGrid::PointGrid(double cell) : inverseCell_(1 / cell), slots_(64) {
+PointGrid::PointGrid(double cell)
+    : inverseCell_(1 / cell), slots_(std::size_t(1) << (64 - shift_)) {
   if (!(cell > 0) || !std::isfinite(inverseCell_))
     throw SettingError("cell", "must be positive and finite");
 }
@@ -34,10 +35,12 @@ std::int64_t PointGrid::cellOf(double x, int axis) const {
   return static_cast<std::int64_t>(std::clamp(cell, -kFarthestCell, kFarthestCell));
 }
 
-// The slot that holds the key, or the free one where it belongs.
+// The slot that holds the key, or the free one where it belongs. All bits of a key reach the
+// highest bits of its product alone (Knuth, The Art of Computer Programming 3, 6.4): x is missing
+// in those below its own.
 std::uint64_t PointGrid::slotOf(std::uint64_t key) const {
   const std::uint64_t mask = slots_.size() - 1;
-  std::uint64_t slot = (key * 0x9e3779b97f4a7c15u) >> 20 & mask;
+  std::uint64_t slot = (key * 0x9e3779b97f4a7c15u) >> shift_;
   while (slots_[slot].last >= 0 && slots_[slot].key != key) slot = (slot + 1) & mask;
   return slot;
 }
@@ -45,6 +48,7 @@ std::uint64_t PointGrid::slotOf(std::uint64_t key) const {
 void PointGrid::grow() {
   std::vector<Slot> old(2 * slots_.size());
   old.swap(slots_);
+  --shift_;
   for (const Slot& s : old)
     if (s.last >= 0) slots_[slotOf(s.key)] = s;
 }

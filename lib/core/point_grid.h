@@ -45,6 +45,7 @@ class PointGrid {
   bool visitCells(const Range& range, const Visit& visit) const;
 
   double inverseCell_;
+  int shift_ = 58;  // 64 less the binary logarithm of the number of slots
   Vec3 origin_;
   Points points_;
   std::vector<std::int64_t> previous_;  // in the same cell

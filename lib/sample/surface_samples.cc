@@ -60,7 +60,7 @@ std::vector<SurfacePoint> randomSamples(const Mesh& mesh, std::size_t count,
 
 std::vector<SurfacePoint> blueNoiseSamples(const Mesh& mesh, std::size_t count,
                                            const SampleSettings& settings) {
-  requireNumber("samples", count, {0, kMaxSamples / 5});
+  requireNumber("samples", count, {0, kMaxSamples / 5.0});
   const std::vector<SurfacePoint> candidates = randomSamples(mesh, candidatesFor(count), settings);
   Points points(candidates.size());
   // About the centre: positions far from the origin lose digits that distances need.

@@ -91,21 +91,21 @@ struct SumPoints::Data {
     // Not under the lock: a thread that waits for parts of its tree may take up another sum at
     // these points.
     auto fresh = std::make_shared<const BallTree>(points, 0, kPointsPerLeaf, kHalvings);
-    const std::lock_guard lock(mutex);
-    if (!balls) balls = std::move(fresh);
-    return balls;
+    const std::lock_guard lock(mutex_);
+    if (!balls_) balls_ = std::move(fresh);
+    return balls_;
   }
 
   const Points points;
 
  private:
   std::shared_ptr<const BallTree> get() const {
-    const std::lock_guard lock(mutex);
-    return balls;
+    const std::lock_guard lock(mutex_);
+    return balls_;
   }
 
-  mutable std::mutex mutex;
-  mutable std::shared_ptr<const BallTree> balls;
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const BallTree> balls_;
 };
 
 SumPoints::SumPoints(Points points) : data_(std::make_shared<const Data>(std::move(points))) {}

@@ -268,14 +268,11 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
     const std::uint64_t need = studyMemory(run);
     if (row) {
       ++study.kept;
-    } else if (i % settings.shares != settings.share - 1) {
+    } else if (i % settings.shares != settings.share - 1 || (need <= most && outOfTime())) {
       ++study.left;
       continue;
     } else if (need > most) {
       row = tooLarge(run, need);
-    } else if (outOfTime()) {
-      ++study.left;
-      continue;
     } else {
       row = runner.make(run);
       keptRuns.keep(*row);
