@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 
@@ -74,9 +75,10 @@ class AdaptiveFitting {
   void first();
   Level& level(std::size_t l);
   bool refine(const std::vector<Points>& marks);
-  bool refineOnce(const std::vector<Points>& marks);
+  bool refineOnce(std::vector<Points> marks);
   void collocate(PlacementRequest request, Matrix& values);
   Points dropLoose(Level& level, std::size_t last) const;
+  Points withoutCharge(const Level& level, const Points& marks) const;
   void solve();
   double score(const BoundaryError& error) const;
   void keepIfBest();
@@ -187,9 +189,20 @@ Points AdaptiveFitting::dropLoose(Level& level, std::size_t last) const {
   return {level.sources.begin() + first, level.sources.end()};
 }
 
+// Those of the marks that no charge of the level is near: there was no room.
+Points AdaptiveFitting::withoutCharge(const Level& level, const Points& marks) const {
+  const double reach = kCollocationReach * level.distance * problem_.diagonal;
+  const PointGrid charges(level.sources, 2 * reach);
+  Points out;
+  std::copy_if(marks.begin(), marks.end(), std::back_inserter(out),
+               [&](const Vec3& p) { return !charges.anyNearer(p, reach); });
+  return out;
+}
+
 // Adds charges around the marks, and boundary points around the charges; false when there is room
-// for none.
-bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
+// for none. Marks where a level finds no room are tried on the next one, up to one that is finer
+// than all before.
+bool AdaptiveFitting::refineOnce(std::vector<Points> marks) {
   const std::size_t before = collocation_.size();
   std::vector<SourceLevel> added;
   Matrix values;
@@ -203,8 +216,12 @@ bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
         {marks[l], marks_->reach(l) / problem_.diagonal, kSourceDarts * fine.spacing, fine.sources,
          settings_.maxSources - there, requests_++},
         fine.distance);
-    if (fresh.empty()) continue;
     fine.sources.insert(fine.sources.end(), fresh.begin(), fresh.end());
+    if (l + 1 < marks.size()) {
+      const Points down = withoutCharge(fine, marks[l]);
+      marks[l + 1].insert(marks[l + 1].end(), down.begin(), down.end());
+    }
+    if (fresh.empty()) continue;
     collocate({fresh,
                kCollocationReach * fine.distance,
                kCollocationDarts * fine.spacing,

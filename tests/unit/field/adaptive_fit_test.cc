@@ -1,5 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <set>
+
 #include "core/expect.h"
 #include "core/pi.h"
 #include "core/point_grid.h"
@@ -200,6 +205,55 @@ TEST(AdaptiveFitRelease, GoesOnBelowALevelWithoutRoom) {
   EXPECT_EQ(r.levels[1].sources, 0u);
   EXPECT_GT(r.levels[2].sources, 0u);
   EXPECT_EQ(r.end, AdaptiveEnd::met);
+}
+
+// Where a level has no room about some of its marks, the next one is tried there, in the same
+// round, as far as finer levels have been tried.
+TEST(AdaptiveFitRelease, GoesOnBelowALevelWhereThatHasNoRoom) {
+  constexpr std::size_t kNarrow = 3;  // the level without room where x is positive
+  struct Request {
+    std::size_t level;
+    Points marks;
+  };
+  Ball ball;
+  ball.settings.tolerance = 1e-4;
+  std::vector<std::vector<Request>> rounds;
+  const auto draw = ball.problem.draw;
+  ball.problem.draw = [&](std::size_t count, std::uint64_t index) {
+    rounds.emplace_back();
+    return draw(count, index);
+  };
+  std::set<double, std::greater<>> distances;
+  const auto place = ball.problem.placeSources;
+  ball.problem.placeSources = [&](const PlacementRequest& request, double distance) {
+    distances.insert(distance);
+    const auto level =
+        static_cast<std::size_t>(std::distance(distances.begin(), distances.find(distance)));
+    if (level > 0) rounds.back().push_back({level, request.marks});
+    Points there = place(request, distance);
+    const auto narrow = [&](const Vec3& q) { return level == kNarrow && q.x > 0; };
+    there.erase(std::remove_if(there.begin(), there.end(), narrow), there.end());
+    return there;
+  };
+  EXPECT_EQ(fitToTolerance(ball.problem, ball.settings).end, AdaptiveEnd::met);
+  std::size_t seen = 0, finest = 0;
+  for (const std::vector<Request>& round : rounds)
+    for (std::size_t i = 0; i < round.size(); ++i) {
+      const std::size_t before = finest;
+      finest = std::max(finest, round[i].level);
+      if (round[i].level != kNarrow || before <= kNarrow) continue;
+      ASSERT_LT(i + 1, round.size());
+      ASSERT_EQ(round[i + 1].level, kNarrow + 1);
+      const Points& next = round[i + 1].marks;
+      for (const Vec3& p : round[i].marks) {
+        if (p.x < 0.1) continue;  // charges at x below 0 may be near
+        ++seen;
+        EXPECT_TRUE(std::any_of(next.begin(), next.end(),
+                                [&](const Vec3& q) { return norm(p - q) < 1e-12; }))
+            << p.x << " " << p.y << " " << p.z;
+      }
+    }
+  EXPECT_GT(seen, 0u);
 }
 
 // Quarters are moved along each other: no charges meet that, and finer ones about the lines between
