@@ -35,9 +35,8 @@ std::int64_t PointGrid::cellOf(double x, int axis) const {
   return static_cast<std::int64_t>(std::clamp(cell, -kFarthestCell, kFarthestCell));
 }
 
-// The slot that holds the key, or the free one where it belongs. All bits of a key reach the
-// highest bits of its product alone (Knuth, The Art of Computer Programming 3, 6.4): x is missing
-// in those below its own.
+// The slot that holds the key, or the free one where it belongs. By the highest bits of a product
+// (Knuth, The Art of Computer Programming 3, 6.4): those below bit 42 do not depend on x.
 std::uint64_t PointGrid::slotOf(std::uint64_t key) const {
   const std::uint64_t mask = slots_.size() - 1;
   std::uint64_t slot = (key * 0x9e3779b97f4a7c15u) >> shift_;

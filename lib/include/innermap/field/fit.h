@@ -140,10 +140,10 @@ BoundaryError measureBoundaryError(const HarmonicField& field, const Collocation
 //
 // The first level covers the whole boundary. Then, again and again: the error is measured at fresh
 // points, those where it is too large are marked, and around each mark charges are added on the
-// next finer level than it has had so far (where a gap is too narrow for that one, on finer ones,
-// at most one finer than all before); boundary points are added around the new charges; all weights
-// are solved for, starting from those that are there. As each round's points are new ones, none of
-// them has played a part in fitting or marking, and the error is measured without bias.
+// next finer level than it has had so far, or on finer ones where a gap is too narrow for that;
+// boundary points are added around the new charges; all weights are solved for, starting from those
+// that are there. As each round's points are new ones, none of them has played a part in fitting or
+// marking, and the error is measured without bias.
 
 // The smallest tolerance that can be asked for: sums of 1e4 to 1e5 charges whose weights cancel a
 // hundredfold keep some 12 of double precision's 16 digits.
