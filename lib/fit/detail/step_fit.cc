@@ -51,8 +51,9 @@ constexpr double kKept = 0.375, kMended = 0.5, kFar = 2, kLastMended = 1.25;
 // steps that missed left 1.8 times what they may (2.2 through smoothed shapes). Where an
 // intermediate shape runs through itself a step leaves much more, and so do those after it.
 constexpr double kLeap = 2.5, kSmoothedLeap = 4, kLost = 6;
-// Steps in a row through smoothed shapes that did not fold before longer ones are tried again.
-constexpr int kStepsInRow = 4;
+// Steps in a row through smoothed shapes that did not fold before longer ones are tried again;
+// twice as many each time that these fold.
+constexpr int kStepsInRow = 2;
 constexpr double kLengthSlack = 1.01;  // for rounding
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
@@ -87,6 +88,33 @@ struct Step {
   MappedPoints inside;  // at its end
 };
 
+// How long a step through smoothed shapes may be, of the way: half of what folded last, and twice
+// as long after some that did not fold.
+class LongestStep {
+ public:
+  double length() const { return length_; }
+
+  void folded(double half) {
+    if (doubled_) wait_ *= 2;
+    length_ = kLengthSlack * half;
+    doubled_ = false;
+    inRow_ = 0;
+  }
+
+  void taken() {
+    if (doubled_) wait_ = kStepsInRow;
+    doubled_ = ++inRow_ >= wait_;
+    if (!doubled_) return;
+    length_ *= 2;
+    inRow_ = 0;
+  }
+
+ private:
+  double length_ = 1;
+  int wait_ = kStepsInRow, inRow_ = 0;
+  bool doubled_ = false;  // and no step has been taken or folded since then
+};
+
 double growthOf(const BoundaryPair& pair) {
   const double volume = pair.target.volume;
   return volume > 0 ? std::cbrt(volume / pair.solid().volume())
@@ -111,18 +139,19 @@ class StepFitter {
   bool go() {
     std::vector<double> ends{1};  // the next one last
     if (settings_.maxSteps > 1) ends.push_back(0.5);
-    bool hurries = false;  // one step does the rest of the way, for lack of time
+    bool hurries = false;  // one step does the rest of the way, for lack of time or charges
     double seconds = 0;    // of the last step, taken or not
     while (!ends.empty()) {
       reportGoing();
-      if (!hurries && outOfTime(seconds)) {
+      if (!hurries && (outOfTime(seconds) || spent_ > sourcesAt(settings_.waySources))) {
         hurries = true;
         ends = {1};
       }
       const auto mayHalve = [&] {
         return !hurries && static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
       };
-      while (mayHalve() && ends.back() - at_ > longest_) ends.push_back((at_ + ends.back()) / 2);
+      while (mayHalve() && ends.back() - at_ > longest_.length())
+        ends.push_back((at_ + ends.back()) / 2);
       const double end = ends.back();
       const bool may = mayHalve();
       const double half = (end - at_) / 2;
@@ -132,11 +161,10 @@ class StepFitter {
       if (step.fit.end == AdaptiveEnd::stopped ||
           (may && half >= shortest(kShortestFitted) && foldsTooMuch(step))) {
         ends.push_back((at_ + end) / 2);
-        if (smoothed_) longest_ = kLengthSlack * half;
-        inRow_ = 0;
+        if (smoothed_) longest_.folded(half);
         continue;
       }
-      if (++inRow_ % kStepsInRow == 0) longest_ *= 2;
+      longest_.taken();
       ends.pop_back();
       take(std::move(step), ends.empty());
       if (isLost() && !ends.empty()) return false;
@@ -157,8 +185,10 @@ class StepFitter {
     return static_cast<double>(most) / static_cast<double>(triangles_.size());
   }
 
+  bool foldsMany() const { return folded_ > kManyFolds; }
+
   // Whether smoothed shapes may help: they do not where charges are missing.
-  bool runsThroughItself() const { return leapt_ || folded_ > kManyFolds; }
+  bool runsThroughItself() const { return leapt_ || foldsMany(); }
 
   // The rest of the way at once.
   void jump() {
@@ -199,9 +229,13 @@ class StepFitter {
     return std::max((end < 1 ? share_ : kLastShare) * settings_.tolerance, kSmallestTolerance);
   }
 
+  // From that at the tolerance of surfaces that were laid on one another.
+  double sourcesAt(double usual) const {
+    return usual * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
+  }
+
   std::size_t mostSources() const {
-    const double most = (smoothed_ ? kSmoothedSources : kStepSources) *
-                        std::max(1.0, kLaidOnTolerance / settings_.tolerance);
+    const double most = sourcesAt(smoothed_ ? kSmoothedSources : kStepSources);
     return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
   }
 
@@ -231,6 +265,7 @@ class StepFitter {
                allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
     AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_, mending, last), s);
+    spent_ += static_cast<double>(fit.field.sources().size());
     if (fit.end == AdaptiveEnd::maxSources && s.maxSources < settings_.maxSources)
       fit.end = AdaptiveEnd::noGain;
     MappedPoints ends = inside.of(fit.field);
@@ -280,7 +315,7 @@ class StepFitter {
 
   // Whether what is left of the way cannot make the map good.
   bool isLost() const {
-    return (!smoothed_ && missed_ > kLost * settings_.tolerance) || leapt_ || folded_ > kManyFolds;
+    return (!smoothed_ && missed_ > kLost * settings_.tolerance) || leapt_ || foldsMany();
   }
 
   bool leaps(const MapStep& step) const {
@@ -324,14 +359,12 @@ class StepFitter {
   std::vector<MapStep> records_;
   double at_ = 0;  // of the way
   Points now_ = path_.at(0);
-  double folded_ = 0;   // share of the points inside, so far
-  double missed_ = 0;   // what the steps left beyond their tolerances, added up
-  bool leapt_ = false;  // the last step left much more than it may, though it had the charges
-  // That a step may be through smoothed shapes: half of what folded last, doubled in time. On the
-  // usual way long steps tell soonest that it is lost.
-  double longest_ = 1;
-  double share_;   // of the tolerance, that a step before the last may leave
-  int inRow_ = 0;  // steps since then
+  double folded_ = 0;    // share of the points inside, so far
+  double missed_ = 0;    // what the steps left beyond their tolerances, added up
+  bool leapt_ = false;   // the last step left much more than it may, though it had the charges
+  LongestStep longest_;  // on the usual way long steps tell soonest that it is lost
+  double share_;         // of the tolerance, that a step before the last may leave
+  double spent_ = 0;     // charges of all fits, those that were thrown away included
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 
@@ -349,7 +382,7 @@ StepFit fitInSteps(const BoundaryPair& pair, const Points& inside,
     first = smoothed->mostCrossings() <= kFewerCrossings * crossing;
   }
   bool arrived = first && smoothed->go();
-  if (arrived && !smoothed->runsThroughItself()) return smoothed->result();
+  if (arrived && !smoothed->foldsMany()) return smoothed->result();
   if (fitter.go()) return fitter.result();
   if (may && !first && fitter.runsThroughItself() && !outOfTime()) {
     if (!smoothed) smoothed.emplace(pair, inside, settings, Between::smoothed);

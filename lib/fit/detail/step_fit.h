@@ -19,6 +19,10 @@ struct StepFitSettings {
   std::optional<double> proofCells;
   int maxSteps = FitMapSettings().maxSteps;
   std::size_t maxSources = 100000;  // of one step
+  // Of all fits of one way, those that are thrown away included, at the tolerance of surfaces that
+  // were laid on one another, more in proportion at a smaller one; beyond them one step does the
+  // rest. Ways that arrived took up to 320,000.
+  double waySources = 400000;
   std::uint64_t seed = 1;
 };
 

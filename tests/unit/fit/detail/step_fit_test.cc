@@ -197,6 +197,21 @@ TEST(StepFitRelease, ALimbIsTurnedIntoAPit) {
   EXPECT_LE(fit.steps.back().folded, 1e-3);
 }
 
+// However many steps are allowed.
+TEST(StepFitRelease, OneStepDoesTheRestOnceTheChargesOfAWayAreSpent) {
+  constexpr double kWaySources = 4000;
+  const BoundaryPair pair = makeBoundaryPair(drawnOut(1.5), drawnOut(-1));
+  const StepFit fit = fitInSteps(pair, pointsInside(pair.solid(), 2000),
+                                 {.tolerance = 1e-2, .folds = 1e-3, .waySources = kWaySources});
+  ASSERT_GT(fit.steps.size(), 1);
+  EXPECT_EQ(fit.steps.back().to, 1);
+  double before = 0;  // the last two: that which takes more than is left, and the rest
+  for (std::size_t s = 0; s + 2 < fit.steps.size(); ++s)
+    before += static_cast<double>(fit.steps[s].sources);
+  EXPECT_LE(before, kWaySources);
+  EXPECT_GT(fit.steps.back().folded, 1e-3) << "the way was not cut short";
+}
+
 // Limbs and pits take more steps by the detour than are allowed here.
 TEST(StepFitRelease, FewStepsMakeNoDetour) {
   const BoundaryPair pair = makeBoundaryPair(drawnOut(1.5), drawnOut(-1));
