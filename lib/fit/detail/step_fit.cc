@@ -43,17 +43,19 @@ constexpr double kCrumpled = 1.3;
 // many times the volume whose sense is undecided; by how much a step mends a point at most, and how
 // far off points are that it leaves as they are. Those lie in creases, where charges do not help:
 // steps that brought them nearer missed their tolerance all around (cheburashka onto spot: 2.7e-3
-// at 99%, not 1.7e-3). The last step mends all points, by more, and further: over six pairs
-// that left 0.8 of the error at 99%, for 1.1 times the processor time. Through smoothed shapes it
-// alone mends: the others are so many and so short that mending would take most of their charges.
+// at 99%, not 1.7e-3). The last step mends all points, and more of each: over six pairs, a
+// quarter left in place of three eighths made the error at 99% 0.8 times as large, for 1.1 times
+// the processor time. Through smoothed shapes it alone mends: the others are so many and so short
+// that mending would take most of their charges.
 constexpr double kKept = 0.375, kMended = 0.5, kFar = 2, kLastKept = 0.25, kLastMended = 1.25;
 // Times its own tolerance that a step leaves, and of the whole that steps leave beyond their own in
 // all: beyond that, or where the map folds many points, the way is lost. In maps that were kept,
 // steps that missed left 1.8 times what they may (2.2 through smoothed shapes). Where an
 // intermediate shape runs through itself a step leaves much more, and so do those after it.
 constexpr double kLeap = 2.5, kSmoothedLeap = 4, kLost = 6;
-// Steps in a row through smoothed shapes that did not fold before longer ones are tried again;
-// twice as many each time that these fold.
+// Steps in a row through smoothed shapes that did not fold, before one twice as long is tried. If
+// that folds, twice as many come before the next trial: near the target longer steps keep folding,
+// and each trial costs a fit.
 constexpr int kStepsInRow = 2;
 constexpr double kLengthSlack = 1.01;  // for rounding
 // Of the folds that are left: after a step, and after its first charges.
