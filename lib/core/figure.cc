@@ -16,7 +16,7 @@ struct ColumnOf {
   }
 };
 
-struct NumberOf {
+struct FigureNumber {
   double operator()(double value) const { return value; }
   double operator()(bool value) const { return value ? 1 : 0; }
   template <class Value>
@@ -106,7 +106,7 @@ const Figure* findFigure(const Figures& figures, std::string_view key) {
 }
 
 double numberOf(const Figure& figure) {
-  return figure.known ? std::visit(NumberOf(), figure.value) : std::nan("");
+  return figure.known ? std::visit(FigureNumber(), figure.value) : std::nan("");
 }
 
 Figures emptyColumns(const Figures& row) {

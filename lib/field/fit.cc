@@ -14,8 +14,8 @@
 namespace innermap {
 namespace {
 
-constexpr double kNearest = 0.8;   // spacings
-constexpr double kFarthest = 0.5;  // of the diagonal
+constexpr double kNearestSpacings = 0.8;  // spacings
+constexpr double kFarthest = 0.5;         // of the diagonal
 // A farther shell has larger weights that cancel each other: it must earn its place.
 constexpr double kGain = 0.8;
 // When a trial can hardly tell the nearest distance from the next, a full fit at some more spacings
@@ -141,7 +141,9 @@ class Fitting {
     return std::min({wanted, most, data.points.size() / 2});
   }
 
-  double nearest(std::size_t count) const { return kNearest * spacing(count) / problem_.diagonal; }
+  double nearest(std::size_t count) const {
+    return kNearestSpacings * spacing(count) / problem_.diagonal;
+  }
 
   void remember(const Solved& s, bool smooth) {
     trials_.push_back({s.sources.size(), s.distance, smooth, s.solution.heldOutRms});

@@ -22,7 +22,7 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kPointsPerSource = 3;
+constexpr std::size_t kFramePointsPerSource = 3;
 constexpr double kDistance = 1.25;     // spacings
 constexpr double kFarthest = 4;        // spacings, of charges beyond the first level
 constexpr double kProducts = 1e-6;     // accuracy; a hundredth of what the fits leave
@@ -85,7 +85,7 @@ HarmonicField combined(const std::vector<std::pair<const FrameFit*, double>>& fi
 
 std::size_t frameCollocation(const FrameFitterSettings& settings) {
   if (settings.collocation > 0) return settings.collocation;
-  return std::max(kPointsPerSource * settings.sources, settings.sources + 8);
+  return std::max(kFramePointsPerSource * settings.sources, settings.sources + 8);
 }
 
 std::uint64_t frameFitterMemory(const FrameFitterSettings& settings, std::uint64_t others) {

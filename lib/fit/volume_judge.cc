@@ -14,7 +14,7 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kCharges = 600, kCollocation = 1800, kInside = 3000;
+constexpr std::size_t kCharges = 600, kCollocation = 1800, kJudgedPoints = 3000;
 constexpr double kDepth = 0.3;            // of the charges' spacing: what is judged lies deeper
 constexpr double kRegularization = 1e-5;  // Tikhonov's, of the largest singular value
 constexpr double kLeastStretch = 0.02, kFolded = 20;
@@ -29,9 +29,9 @@ Mesh meshOf(const ClosedSurface& surface) {
 
 Points deepOnes(const Solid& solid, double depth) {
   Points out;
-  for (const Vec3& p : pointsInside(solid, 2 * kInside))
+  for (const Vec3& p : pointsInside(solid, 2 * kJudgedPoints))
     if (solid.distance(p) > depth) out.push_back(p);
-  const std::size_t every = out.size() / kInside + 1;
+  const std::size_t every = out.size() / kJudgedPoints + 1;
   Points some;
   for (std::size_t i = 0; i < out.size(); i += every) some.push_back(out[i]);
   return some;

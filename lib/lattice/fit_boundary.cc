@@ -11,7 +11,7 @@
 namespace innermap {
 namespace {
 
-constexpr char kStage[] = "fitting the boundary";
+constexpr char kFitting[] = "fitting the boundary";
 constexpr int kHalvings = 5;  // then the vertex stays where it was
 
 // Whether a cell is right-handed with all dihedral angles within bounds.
@@ -100,7 +100,7 @@ void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh) {
           if (found.onSurface.triangle >= 0) mesh.vertices[i] = found.position;
         }
       },
-      kStage);
+      kFitting);
   boundVertices(before, kLeastDihedral, kGreatestDihedral, mesh);
 }
 

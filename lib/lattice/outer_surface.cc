@@ -37,7 +37,7 @@ constexpr std::size_t kCompared = 20000;  // points of the solid's surface
 constexpr int kMostHandles = 64;          // that nobody asked for
 constexpr int kUncrossings = 8;
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
-constexpr double kNodeBytes = 60;
+constexpr double kGrownNodeBytes = 60;
 
 // OpenVDB's voxels have a least size: a smaller solid is taken a thousand units across.
 constexpr double kSmallestSide = kMostAcross * kSmallestVoxel, kEnlargedSide = 1000;
@@ -224,7 +224,7 @@ std::uint64_t memoryFor(const Solid& solid, const OuterSurfaceSettings& settings
   const double spacing = spacingFor(solid, settings);
   const Vec3 e = solid.box().extent();
   const double nodes = 2 * (e.x / spacing + 7) * (e.y / spacing + 7) * (e.z / spacing + 7);
-  return stuffingNeed(solid, spacing).memory + static_cast<std::uint64_t>(kNodeBytes * nodes);
+  return stuffingNeed(solid, spacing).memory + static_cast<std::uint64_t>(kGrownNodeBytes * nodes);
 }
 
 OuterSurface enlargedOuterSurface(const Solid& solid, const OuterSurfaceSettings& settings) {

@@ -10,7 +10,7 @@
 namespace innermap {
 namespace {
 
-constexpr char kStage[] = "filling with tetrahedra";
+constexpr char kFilling[] = "filling with tetrahedra";
 
 // Corners of a lattice tetrahedron are 0 to 3, the cuts of its edges 4 to 9.
 constexpr int kEdges[6][2] = {{0, 1}, {2, 3}, {0, 2}, {0, 3}, {1, 2}, {1, 3}};
@@ -198,7 +198,7 @@ class Stuffer {
             c[3] += __builtin_popcount(static_cast<unsigned>(cuts));
           });
         },
-        kStage);
+        kFilling);
     std::int64_t next = 0;
     for (int kind = 0; kind < 4; ++kind) {
       if (kind == 2) mesh_.firstBoundary = static_cast<int>(next);
@@ -237,7 +237,7 @@ class Stuffer {
               if (cuts >> d & 1) mesh_.vertices[at[3]++] = onEdge(node, d, heldShare(node, d));
           });
         },
-        kStage);
+        kFilling);
   }
 
   // Cuts that are too near to a node that could not be warped are kept off it, a little farther
@@ -293,7 +293,7 @@ class Stuffer {
           forFilled(begin + margin, end + margin,
                     [&](std::size_t, std::size_t, const Filling& f) { count += f.count; });
         },
-        kStage);
+        kFilling);
     for (std::size_t b = 1; b < starts.size(); ++b) starts[b] += starts[b - 1];
     mesh_.tetrahedra.resize(starts.back());
     parallelBlocks(
@@ -307,7 +307,7 @@ class Stuffer {
                           (*out)[i] = vertexOf(shapes_[s], c, f.tetrahedra[k][i]);
                     });
         },
-        kStage);
+        kFilling);
   }
 
   const LatticeSigns& signs_;

@@ -32,8 +32,8 @@ double thinVoxel(const Solid& solid) { return thicknessOf(solid) / kInThickness;
 
 // About the most that grids of a map take: their leaves reach some 6 voxels to either side.
 double gridBytes(const Solid& solid, double voxel) {
-  constexpr double kVoxel = 100, kReach = 12;
-  return kVoxel * (solid.volume() / std::pow(voxel, 3) + kReach * solid.area() / (voxel * voxel));
+  constexpr double kVoxel = 100, kLayers = 12;
+  return kVoxel * (solid.volume() / std::pow(voxel, 3) + kLayers * solid.area() / (voxel * voxel));
 }
 
 double automaticVoxel(const Solid& solid) {

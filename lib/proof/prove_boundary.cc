@@ -20,14 +20,14 @@ using namespace proof;
 
 constexpr double kExact = 1e-11;  // of the diagonal: an error that is as good as none
 // Pieces that one thread cuts in one go. It looks at their parts, or, at first, at the triangles.
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kTriangleBlock = 64;
 // Halvings of a piece before its parts are looked at. Fewer leave fewer parts smaller than they
 // need be, more leave the eight that are looked at together nearer to one another.
 constexpr int kHalvings = 2;
 constexpr std::uint64_t kParts = 1 << kHalvings;
 // Of the longest edge among pieces: the diagonal of a box about those that are looked at together.
 // What is far from all of them is expanded once.
-constexpr double kMostApart = 4;
+constexpr double kMostBoundaryApart = 4;
 
 // Of the surface's area over the number of pieces that may be looked at: where a piece whose
 // longest edge has so small a square has no bound, the image of the boundary runs into charges of a
@@ -151,7 +151,8 @@ class BoundarySearch {
     for (; end < std::min(begin + kLanes, pieces.size()); ++end) {
       for (const Vec3& v : pieces[end].at) box.add(v);
       square = std::max(square, squaredLength(pieces[end]));
-      const bool apart = squaredNorm(box.extent()) > kMostApart * kMostApart * square;
+      const bool apart =
+          squaredNorm(box.extent()) > kMostBoundaryApart * kMostBoundaryApart * square;
       if (end > begin && (apart || isFine(pieces[end]) != isFine(pieces[begin]))) break;
     }
     return end;
@@ -160,9 +161,9 @@ class BoundarySearch {
   // Each piece halved so many times.
   void round(std::vector<SurfacePiece> pieces, int times) {
     sortAlongCurve(box_, pieces);
-    std::vector<BlockPieces> blocks((pieces.size() + kBlock - 1) / kBlock);
-    parallelBlocks(pieces.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      BlockPieces& out = blocks[begin / kBlock];
+    std::vector<BlockPieces> blocks((pieces.size() + kTriangleBlock - 1) / kTriangleBlock);
+    parallelBlocks(pieces.size(), kTriangleBlock, [&](std::size_t begin, std::size_t end) {
+      BlockPieces& out = blocks[begin / kTriangleBlock];
       for (std::size_t i = begin; i < end; ++i) cut(pieces[i], times, out.pieces);
       SetGroup group;
       for (std::size_t i = 0, next = 0; i < out.pieces.size(); i = next) {

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kTriangles = 0x7665'0003;  // stream of random numbers
 constexpr double kUnit = 0x1p-52;
 // Of a triangle's size: where parts as small are not decided, smaller ones will not be.
-constexpr double kSmallest = 1.0 / 4096;
+constexpr double kSmallestPiece = 1.0 / 4096;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -123,7 +123,7 @@ TriangleOutcome examine(const ComposedMap& map, const Piece& triangle, double bo
       continue;
     }
     if (out.sure > bound || pieces + open.size() >= most ||
-        extent(piece) <= kSmallest * extent(triangle)) {
+        extent(piece) <= kSmallestPiece * extent(triangle)) {
       out.decided = false;
       break;
     }

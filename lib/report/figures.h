@@ -12,6 +12,9 @@
 
 namespace innermap {
 
+constexpr auto kShare = FigureUnit::share, kDiagonals = FigureUnit::diagonals,
+               kSeconds = FigureUnit::seconds;
+
 struct BoundaryError;
 struct BoundaryFit;
 struct Box3;

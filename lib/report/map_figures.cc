@@ -8,9 +8,6 @@
 namespace innermap {
 namespace {
 
-constexpr auto kShare = FigureUnit::share;
-constexpr auto kDiagonals = FigureUnit::diagonals;
-
 Figures boundFigures(double p99Bound, double bound) {
   return {{"p99_bound", p99Bound, "99% within, for sure",
            "bound on the share of 99%, with the confidence below", kDiagonals},

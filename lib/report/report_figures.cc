@@ -10,14 +10,6 @@
 #include "report/figures.h"
 
 namespace innermap {
-namespace {
-
-constexpr auto kShare = FigureUnit::share;
-constexpr auto kDiagonals = FigureUnit::diagonals;
-constexpr auto kSeconds = FigureUnit::seconds;
-
-}  // namespace
-
 Figures figures(const ReportMesh& m) {
   return together(
       {{{"path", m.path, "file", ""},

@@ -7,6 +7,7 @@
 #include "innermap/evaluate/grids.h"
 #include "innermap/field/fit.h"
 #include "innermap/fit/frame_fitter.h"
+#include "report/figures.h"
 #include "report/report.h"
 #include "report/report_figures.h"
 #include "report/svg_chart.h"
@@ -32,8 +33,7 @@ SequenceRow sequenceRow(const FrameFit& fit, const MapGrids& grids);
 // Calls visit(key, member, name, meaning, unit) for each number that the row and its part have.
 template <class Row, class Visit>
 void eachNumber(Row& r, const Visit& visit) {
-  constexpr auto kNone = FigureUnit::none, kShare = FigureUnit::share,
-                 kDiagonals = FigureUnit::diagonals;
+  constexpr auto kNone = FigureUnit::none;
   visit("harmonic", r.harmonic, "harmonic energy", "3 for a rigid motion", kNone);
   visit("deformation", r.deformation, "deformation energy", "0 for a rigid motion", kNone);
   visit("deformation_mean", r.deformationMean, "deformation, mean", "of a unit of volume", kNone);

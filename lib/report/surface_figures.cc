@@ -6,8 +6,6 @@
 namespace innermap {
 namespace {
 
-constexpr auto kDiagonals = FigureUnit::diagonals;
-
 Figures placeFigures(const Vec3& place, double size) {
   return {{"x", place.x, "x", "", FigureUnit::length},
           {"y", place.y, "y", "", FigureUnit::length},

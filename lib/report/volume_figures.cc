@@ -13,8 +13,6 @@
 namespace innermap {
 namespace {
 
-constexpr auto kShare = FigureUnit::share;
-
 Figures errorFigures(const std::string& key, const std::string& name, const BoundaryError& e) {
   return when(e.samples > 0, {{key + "_rms", e.rms, name, "root mean square"},
                               {key + "_p99", e.p99, name, "99% within"},

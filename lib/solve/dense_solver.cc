@@ -18,8 +18,6 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kAffine = kAffineUnknowns;
-
 Points normalised(const Points& points, const Vec3& center, double scale) {
   Points out(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) out[i] = (points[i] - center) / scale;
@@ -67,7 +65,7 @@ void svd(Matrix& r, Matrix& s, Matrix& u, Matrix& vt) {
 std::uint64_t denseSolverMemory(std::size_t collocation, std::size_t sources, std::size_t heldOut) {
   const std::uint64_t m = collocation, n = sources, h = heldOut;
   // The matrix; R22, U, V^T and 4 n^2 of workspace, of which U^T takes the place; held-out modes.
-  return 8 * (m * (n + kAffine) + 7 * n * n + 2 * h * n + 64 * n);
+  return 8 * (m * (n + kAffineUnknowns) + 7 * n * n + 2 * h * n + 64 * n);
 }
 
 class DenseSolver::Factors {
@@ -109,7 +107,7 @@ struct DenseSolver::Factors::Projected {
 DenseSolver::Factors::Factors(const Collocation& collocation, const Points& sources,
                               const Collocation& heldOut)
     : sources_(sources.size()) {
-  const std::size_t m = collocation.size(), n = sources.size(), columns = n + kAffine;
+  const std::size_t m = collocation.size(), n = sources.size(), columns = n + kAffineUnknowns;
   if (n == 0) throw SettingError("charges", "there are none; use at least 1");
   if (m < columns)
     throw SettingError("collocation points", std::to_string(m) + " for " + std::to_string(n) +
@@ -133,24 +131,24 @@ DenseSolver::Factors::Factors(const Collocation& collocation, const Points& sour
 
 // QR of [P A]; keeps what belongs to the affine part and gives R22.
 Matrix DenseSolver::Factors::factor(const Collocation& at, const Points& sources) {
-  const std::size_t m = at.size(), n = sources.size(), columns = n + kAffine;
+  const std::size_t m = at.size(), n = sources.size(), columns = n + kAffineUnknowns;
   Matrix a(m, columns);
   fillAffineRows(at, a.data(), m);
-  fillKernelMatrix(at.points, sources, 1, a.column(kAffine), m);
-  fillDerivativeRows(at, sources, a.column(kAffine), m);
+  fillKernelMatrix(at.points, sources, 1, a.column(kAffineUnknowns), m);
+  fillDerivativeRows(at, sources, a.column(kAffineUnknowns), m);
   qr_ = BlockedQr(std::move(a));
   const Matrix r = qr_.upperTriangle();
   Matrix r22(n, n);
-  affineBlock_ = Matrix(kAffine, kAffine);
-  coupling_ = Matrix(kAffine, n);
+  affineBlock_ = Matrix(kAffineUnknowns, kAffineUnknowns);
+  coupling_ = Matrix(kAffineUnknowns, n);
   for (std::size_t j = 0; j < columns; ++j)
     for (std::size_t i = 0; i <= j; ++i) {
-      if (j < kAffine)
+      if (j < kAffineUnknowns)
         affineBlock_(i, j) = r(i, j);
-      else if (i < kAffine)
-        coupling_(i, j - kAffine) = r(i, j);
+      else if (i < kAffineUnknowns)
+        coupling_(i, j - kAffineUnknowns) = r(i, j);
       else
-        r22(i - kAffine, j - kAffine) = r(i, j);
+        r22(i - kAffineUnknowns, j - kAffineUnknowns) = r(i, j);
     }
   solveAffineTriangle(affineBlock_, coupling_);
   return r22;
@@ -167,7 +165,7 @@ void DenseSolver::Factors::decompose(Matrix& r22) {
 
 void DenseSolver::Factors::prepareHeldOut(const Collocation& at, const Points& sources) {
   const std::size_t n = sources.size();
-  heldOutAffine_ = Matrix(at.size(), kAffine);
+  heldOutAffine_ = Matrix(at.size(), kAffineUnknowns);
   fillAffineRows(at, heldOutAffine_.data(), at.size());
   Matrix kernel(at.size(), n), right(n, n);
   fillKernelMatrix(at.points, sources, 1, kernel.data(), at.size());
@@ -182,11 +180,11 @@ void DenseSolver::Factors::prepareHeldOut(const Collocation& at, const Points& s
 DenseSolver::Factors::Projected DenseSolver::Factors::project(const Matrix& values) const {
   Matrix c = values;
   qr_.applyTransposedQ(c);
-  Projected out{Matrix(kAffine, values.columns()), Matrix(sources_, values.columns())};
+  Projected out{Matrix(kAffineUnknowns, values.columns()), Matrix(sources_, values.columns())};
   Matrix tail(sources_, values.columns());
   for (std::size_t k = 0; k < values.columns(); ++k) {
-    std::copy_n(c.column(k), kAffine, out.affine.column(k));
-    std::copy_n(c.column(k) + kAffine, sources_, tail.column(k));
+    std::copy_n(c.column(k), kAffineUnknowns, out.affine.column(k));
+    std::copy_n(c.column(k) + kAffineUnknowns, sources_, tail.column(k));
   }
   solveAffineTriangle(affineBlock_, out.affine);
   multiply(false, 1, leftTransposed_, tail, 0, out.modes);
@@ -276,10 +274,11 @@ DenseSolution DenseSolver::Factors::solve(const Matrix& values, Regularization m
   multiply(false, -1, coupling_, weights, 1, affine);
 
   out.affine.center = center_;
-  out.affine.coefficients = Matrix(kAffine, channels);
+  out.affine.coefficients = Matrix(kAffineUnknowns, channels);
   for (std::size_t k = 0; k < channels; ++k) {
     out.affine.coefficients(0, k) = affine(0, k);
-    for (std::size_t a = 1; a < kAffine; ++a) out.affine.coefficients(a, k) = affine(a, k) / scale_;
+    for (std::size_t a = 1; a < kAffineUnknowns; ++a)
+      out.affine.coefficients(a, k) = affine(a, k) / scale_;
   }
   const double valueSpan = span(values);
   if (valueSpan > 0) out.weightNorm = largestMagnitude(weights) / valueSpan;

@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kPointsPerLeaf = 400;
 constexpr int kHalvings = 3;
 constexpr std::size_t kSampled = 128, kSampledBlocks = 32;
-constexpr double kLeastGain = 0.5;   // of a higher order: less, and the highest is found
+constexpr double kLeastOrderGain = 0.5;  // of a higher order: less, and the highest is found
 constexpr double kLeastBall = 1e-9;  // radius of a leaf of coincident points, of the charges' box
 
 std::vector<std::size_t> evenly(std::size_t wanted, std::size_t count) {
@@ -225,7 +225,7 @@ Checked mostAccurate(const ChargeTree& tree, const SumSize& size, const FastSumS
     const FieldSamples got = sample(*now.hierarchy);
     now.excess = reference.excess(got);
     now.error = reference.error(got);
-    const bool gains = now.excess < kLeastGain * best.excess;
+    const bool gains = now.excess < kLeastOrderGain * best.excess;
     plan = raised(plan, now.excess);
     if (now.excess < best.excess) {
       best = std::move(now);

@@ -15,7 +15,7 @@
 namespace innermap {
 namespace {
 
-constexpr char kStage[] = "measuring the map";
+constexpr char kMeasuring[] = "measuring the map";
 constexpr std::size_t kBlock = 256;
 constexpr double kCollapsed = 1e12;  // stretch of a triangle whose image has no area
 
@@ -100,7 +100,7 @@ class Measurement {
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) body(i);
         },
-        kStage);
+        kMeasuring);
   }
 
   Stretches scaled(Stretches s) const { return {scale_ * s.s1, scale_ * s.s2}; }
@@ -272,7 +272,7 @@ class Measurement {
 
 MapQuality mapQuality(const Correspondence& map, const MapQualitySettings& settings) {
   requireNumber("samples", settings.samples, {1, 1e8});
-  reportProgress(kStage, 0);
+  reportProgress(kMeasuring, 0);
   return Measurement(map, settings).run();
 }
 

@@ -10,7 +10,7 @@
 namespace innermap {
 namespace {
 
-constexpr char kStage[] = "carrying points over";
+constexpr char kCarrying[] = "carrying points over";
 
 // One pair of shells with what asking needs.
 struct ShellMap {
@@ -66,7 +66,7 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map,
           distance[i] = closest.distance;
         }
       },
-      kStage);
+      kCarrying);
   for (std::size_t s = 0; s < map.shells.size(); ++s) {
     std::vector<std::size_t> members;
     std::vector<SurfacePoint> here;
@@ -109,7 +109,7 @@ Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Corresponden
           result[i] = maps[place.shell]->composed.preimage(place.triangle, point.barycentric);
         }
       },
-      kStage);
+      kCarrying);
   return result;
 }
 

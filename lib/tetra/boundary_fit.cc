@@ -13,7 +13,7 @@
 namespace innermap {
 namespace {
 
-constexpr char kStage[] = "comparing the boundaries";
+constexpr char kComparing[] = "comparing the boundaries";
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
 SurfaceDistance distanceOf(const Mesh& from, double diagonal, const BoundaryFitSettings& settings,
@@ -28,7 +28,7 @@ SurfaceDistance distanceOf(const Mesh& from, double diagonal, const BoundaryFitS
         for (std::size_t i = begin; i < end; ++i)
           found[i] = distance(positionOf(from, samples[i])) / diagonal;
       },
-      kStage);
+      kComparing);
   SurfaceDistance result;
   for (const double d : found) {
     result.rms += d * d;
@@ -54,7 +54,7 @@ std::size_t inwardFaces(const Mesh& boundary, const Solid& solid) {
         }
         count += own;
       },
-      kStage);
+      kComparing);
   return count;
 }
 

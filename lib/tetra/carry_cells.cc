@@ -14,7 +14,7 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kCarryBlock = 1024;
 constexpr double kBackwards = -0.25;  // cosine, of normals that cannot belong together
 
 // The boundary's vertices, how they hang together, and which way they face.
@@ -132,7 +132,7 @@ CellCarry carry(const CellMesh& mesh, const BoundaryWay& way, const CarryCellsSe
   const GuideSurface surface(way.from.vertices, way.from.triangles);
   std::vector<ClosestPoint> found(boundary.vertices.size());
   parallelBlocks(
-      found.size(), kBlock,
+      found.size(), kCarryBlock,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
           found[b] = surface.closest(mesh.vertices[boundary.vertices[b]]);
@@ -190,7 +190,7 @@ CellCarry carryCellsBack(const CellMesh& mesh, const MappedSolid& mapped, const 
   return carry(mesh, way, settings, [&](const Points& from) {
     Points to(from.size());
     parallelBlocks(
-        from.size(), kBlock,
+        from.size(), kCarryBlock,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             const CellPoint at = locator.locate(from[i]);

@@ -10,8 +10,8 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
-constexpr char kStage[] = "measuring cells";
+constexpr std::size_t kQualityBlock = 4096;
+constexpr char kMeasuringCells[] = "measuring cells";
 
 double degrees(double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / kPi; }
 
@@ -89,7 +89,7 @@ CellQuality cellQuality(const CellMesh& mesh) {
   q.scaledJacobian.resize(mesh.hexahedra.size());
   std::atomic<std::uint64_t> tetrahedra{0}, hexahedra{0};
   parallelBlocks(
-      mesh.tetrahedra.size(), kBlock,
+      mesh.tetrahedra.size(), kQualityBlock,
       [&](std::size_t begin, std::size_t end) {
         std::uint64_t inverted = 0;
         for (std::size_t t = begin; t < end; ++t) {
@@ -100,9 +100,9 @@ CellQuality cellQuality(const CellMesh& mesh) {
         }
         tetrahedra += inverted;
       },
-      kStage);
+      kMeasuringCells);
   parallelBlocks(
-      mesh.hexahedra.size(), kBlock,
+      mesh.hexahedra.size(), kQualityBlock,
       [&](std::size_t begin, std::size_t end) {
         std::uint64_t inverted = 0;
         for (std::size_t h = begin; h < end; ++h) {
@@ -112,7 +112,7 @@ CellQuality cellQuality(const CellMesh& mesh) {
         }
         hexahedra += inverted;
       },
-      kStage);
+      kMeasuringCells);
   q.invertedTetrahedra = tetrahedra;
   q.invertedHexahedra = hexahedra;
   q.dihedral = summaryOf(q.leastDihedral, 0, 5, 15);

@@ -13,7 +13,7 @@
 namespace innermap {
 namespace {
 
-constexpr char kStage[] = "solving finite elements";
+constexpr char kSolving[] = "solving finite elements";
 
 using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 using Factor = Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::AMDOrdering<int>>;
@@ -136,7 +136,7 @@ class Solver {
       direction = z + next / rz * direction;
       rz = next;
       reportProgress(
-          kStage,
+          kSolving,
           std::clamp(std::log(residual.norm() / norm) / std::log(settings_.residual), 0.0, 1.0));
     }
     return residual.norm() / norm;

@@ -25,7 +25,7 @@ constexpr double kTolerance = 5e-3;
 constexpr std::size_t kMaxSources = 6000;
 constexpr int kRetries = 2;
 constexpr double kMoreBlocks = 1.15;  // each time, across
-constexpr std::size_t kFeatureSamples = 20000, kBlock = 256;
+constexpr std::size_t kFeatureSamples = 20000, kHexahedraBlock = 256;
 // Measured: of shaping; and what the correspondence and the map keep while the other is made.
 // Of the time that is left: what comes after, shaping above all, needs the rest.
 constexpr double kFittingShare = 0.4;
@@ -106,7 +106,7 @@ void measureFeatures(const Mesh& surface, const HexahedralizeSettings& settings,
   if (samples.empty()) return;
   const TriangleTree tree(out.mesh.vertices, boundaryTriangles(out.mesh));
   std::vector<double> lengths(samples.size());
-  parallelBlocks(samples.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallelBlocks(samples.size(), kHexahedraBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) lengths[i] = tree.closest(samples[i]).distance;
   });
   const double diagonal = boundingBox(surface).diagonal();

@@ -14,15 +14,16 @@
 namespace innermap {
 namespace {
 
-constexpr int kRings = 2;
+constexpr int kImprovedRings = 2;
 constexpr double kOff = 1e-8;  // of the surface's diagonal
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kImproveBlock = 4096;
 
 std::vector<int> poorByAngle(const std::vector<Tetrahedron>& tets, const Points& at, double least) {
-  std::vector<std::vector<int>> parts((tets.size() + kBlock - 1) / kBlock);
-  parallelBlocks(tets.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::vector<int>> parts((tets.size() + kImproveBlock - 1) / kImproveBlock);
+  parallelBlocks(tets.size(), kImproveBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
-      if (!(leastSine(at, tets[t]) >= least)) parts[begin / kBlock].push_back(static_cast<int>(t));
+      if (!(leastSine(at, tets[t]) >= least))
+        parts[begin / kImproveBlock].push_back(static_cast<int>(t));
   });
   std::vector<int> poor;
   for (const auto& part : parts) poor.insert(poor.end(), part.begin(), part.end());
@@ -140,7 +141,7 @@ CellImprovement improveCells(CellMesh& mesh, const Mesh& surface, CarriedCells& 
     for (std::size_t t = 0; t < out.origin.size(); ++t) out.origin[t] = static_cast<int>(t);
     return out;
   }
-  const std::vector<CellPatch> patches = growPatches(system, seeds, kRings, true);
+  const std::vector<CellPatch> patches = growPatches(system, seeds, kImprovedRings, true);
   std::vector<LocalCells> locals(patches.size());
   std::vector<ShapePassResult> results(patches.size());
   parallelBlocks(

@@ -13,13 +13,13 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kProofBlock = 4096;
 
 void proveTetrahedra(const CellMesh& mesh, CellProof& out) {
   const std::size_t count = mesh.tetrahedra.size();
-  std::vector<CellProof> parts((count + kBlock - 1) / kBlock);
-  parallelBlocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
-    CellProof& part = parts[begin / kBlock];
+  std::vector<CellProof> parts((count + kProofBlock - 1) / kProofBlock);
+  parallelBlocks(count, kProofBlock, [&](std::size_t begin, std::size_t end) {
+    CellProof& part = parts[begin / kProofBlock];
     for (std::size_t t = begin; t < end; ++t) {
       const Sign s = signOf(mesh.vertices, mesh.tetrahedra[t], part.exact);
       part.inverted += s == Sign::negative || s == Sign::zero;

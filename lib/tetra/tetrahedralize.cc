@@ -18,7 +18,7 @@
 namespace innermap {
 namespace {
 
-constexpr int kLeastAcross = 4, kMostAcross = 1024;
+constexpr int kLeastAcross = 4, kFinestAcross = 1024;
 
 constexpr double kMostLost = 1e-3;  // of the surface, without a warning
 
@@ -30,11 +30,11 @@ double spacingFor(const Solid& solid, const TetrahedralizeSettings& settings) {
   }
   const double across = longest / settings.edge;
   if (!(settings.edge > 0 && across >= kLeastAcross * (1 - 1e-9) &&
-        across <= kMostAcross * (1 + 1e-9)))
+        across <= kFinestAcross * (1 + 1e-9)))
     throw SettingError("edge", fmt::format("must lie between {:.4g} and {:.4g} world units, {} to "
                                            "{} cells along the longest side",
-                                           longest / kMostAcross, longest / kLeastAcross,
-                                           kLeastAcross, kMostAcross));
+                                           longest / kFinestAcross, longest / kLeastAcross,
+                                           kLeastAcross, kFinestAcross));
   return settings.edge;
 }
 
@@ -76,11 +76,12 @@ void requireMemoryFor(const Solid& solid, double spacing) {
 [[noreturn]] void refuse(const Solid& solid, const SolidTopology& wanted,
                          const SolidTopology& found, double spacing) {
   const double across = longestSide(solid) / spacing;
-  std::string advice = "no resolution up to " + std::to_string(kMostAcross) + " that fits would do";
+  std::string advice =
+      "no resolution up to " + std::to_string(kFinestAcross) + " that fits would do";
   for (const double factor : {1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0}) {
     const double finer = std::ceil(across * factor);
     const double step = longestSide(solid) / finer;
-    if (finer > kMostAcross || memoryFor(solid, step) > memoryLimit()) break;
+    if (finer > kFinestAcross || memoryFor(solid, step) > memoryLimit()) break;
     LatticeSigns signs = latticeSigns(solid, step);
     if (!keepTopology(solid, &wanted, signs).kept) continue;
     advice = fmt::format("a resolution of {:.0f} would do", finer);
@@ -198,7 +199,7 @@ std::vector<Setting> describe(TetrahedralizeSettings& s) {
       Setting("resolution", "N", &s.resolution,
               "cells of the lattice along the longest side of the mesh's box; each makes twelve "
               "tetrahedra")
-          .from(kLeastAcross, kMostAcross),
+          .from(kLeastAcross, kFinestAcross),
       Setting("edge", "LENGTH", &s.edge, "side of a cell of the lattice, in place of {resolution}")
           .in("world units")
           .above(0, 1e12)

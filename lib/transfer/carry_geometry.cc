@@ -15,7 +15,7 @@ namespace {
 using Edge = std::array<int, 2>;
 
 constexpr int kMostRounds = 30;
-constexpr std::size_t kTogether = std::size_t{1} << 18;  // edges
+constexpr std::size_t kEdgesTogether = std::size_t{1} << 18;  // edges
 // Of a new point with what is between it: an element or two, places in tables.
 constexpr std::uint64_t kPointBytes = 400;
 
@@ -23,8 +23,8 @@ constexpr std::uint64_t kPointBytes = 400;
 std::vector<Edge> bentEdges(const Geometry& geometry, const std::vector<Edge>& edges,
                             const PointCarry& carry, double tolerance) {
   std::vector<Edge> bent;
-  for (std::size_t begin = 0; begin < edges.size(); begin += kTogether) {
-    const std::size_t end = std::min(edges.size(), begin + kTogether);
+  for (std::size_t begin = 0; begin < edges.size(); begin += kEdgesTogether) {
+    const std::size_t end = std::min(edges.size(), begin + kEdgesTogether);
     Points at;
     for (std::size_t e = begin; e < end; ++e) {
       const Vec3 &a = geometry.points[edges[e][0]], &b = geometry.points[edges[e][1]];

@@ -27,7 +27,6 @@ constexpr double kInverted = 1e-5;                       // of the target's diag
 constexpr double kSkinVoxels = 3;                        // of the target, where points are pulled
 // Of the inverse on the grid, which gives starts, no more: in its voxels; of the target's extent.
 constexpr double kStartTolerance = 0.01, kStartAccuracy = 1e-5;
-constexpr std::size_t kMostStepByStep = 2000;
 
 void requireFinite(const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i)

@@ -20,12 +20,10 @@
 namespace innermap {
 namespace {
 
-constexpr double kInverted = 0.01;                       // target voxels
-constexpr std::size_t kTogether = std::size_t{1} << 18;  // points of one Newton iteration
+constexpr double kInvertedVoxels = 0.01;                         // target voxels
+constexpr std::size_t kInvertedTogether = std::size_t{1} << 18;  // points of one Newton iteration
 constexpr std::size_t kListed = 16;
-constexpr int kRounds = 3;  // of starts from neighbours
-// Where more voxels are not inverted the map folds, and there is nothing to be found.
-constexpr std::size_t kMostStepByStep = 2000;
+constexpr int kRounds = 3;          // of starts from neighbours
 constexpr double kLongestStep = 4;  // voxels of the source's lattice
 // Of a voxel of the region while it is inverted.
 constexpr std::uint64_t kVoxelBytes = sizeof(Vec3) + sizeof(std::array<float, 9>) + 24;
@@ -141,7 +139,7 @@ void Inversion::invert(const LeafIndex& leaves, const LeafStarts* starts, Invert
   std::size_t l = 0;
   while (l < leaves.size()) {
     Batch batch;
-    for (; l < leaves.size() && batch.targets.size() < kTogether; ++l) {
+    for (; l < leaves.size() && batch.targets.size() < kInvertedTogether; ++l) {
       std::size_t i = out.first[begin_ + l];
       for (auto voxel = leaves[l].cbeginValueOn(); voxel; ++voxel, ++i) {
         const openvdb::Vec3d start(starts[l].source[voxel.pos()]);
@@ -166,7 +164,7 @@ std::size_t Inversion::solve(Batch& batch, InvertedMap& out) {
     for (std::size_t k = 0; k < 9; ++k)
       out.jacobians[i][k] = static_cast<float>(found.at[n].jacobian[k / 3][k % 3]);
     const double residual = found.residuals[n] / voxel_;
-    if (!(residual <= kInverted)) continue;
+    if (!(residual <= kInvertedVoxels)) continue;
     out.statistics.largestResidual = std::max(out.statistics.largestResidual, residual);
     good_[batch.places[n].leaf].set(batch.places[n].offset);
     ++inverted;
@@ -311,7 +309,7 @@ double shareInverted(std::uint64_t voxels, std::uint64_t failed) {
 }  // namespace
 
 void requireInRange(const InverseSettings& s) {
-  requireNumber("tolerance", s.tolerance, {1e-6, kInverted}, "voxels");
+  requireNumber("tolerance", s.tolerance, {1e-6, kInvertedVoxels}, "voxels");
   requireNumber("outside", s.outside.distance, {0, 1}, "of the diagonal");
   requireNumber("accuracy", s.accuracy, {1e-12, 1e-3}, "of the target's extent");
 }

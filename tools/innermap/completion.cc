@@ -8,7 +8,7 @@ namespace {
 
 enum class Takes { nothing, choice, command, file, folder, other };
 
-Takes takes(const Command& command, const Option& o) {
+Takes takenBy(const Command& command, const Option& o) {
   if (o.isFlag()) return Takes::nothing;
   if (!o.choices.empty()) return Takes::choice;
   if (o.isPositional() && command.name() == "help") return Takes::command;
@@ -50,7 +50,7 @@ std::string bashNames(const Option& o) {
 }
 
 std::string bashValues(const Command& command, const Option& o) {
-  switch (takes(command, o)) {
+  switch (takenBy(command, o)) {
     case Takes::choice:
       return fmt::format("compgen -W {} -- \"$cur\"",
                          apostrophes(fmt::format("{}", fmt::join(o.choices, " "))));
@@ -106,7 +106,7 @@ complete -F _innermap innermap
 }
 
 std::string zshAction(const Command& command, const Option& o) {
-  switch (takes(command, o)) {
+  switch (takenBy(command, o)) {
     case Takes::choice:
       return fmt::format("({})", fmt::join(o.choices, " "));
     case Takes::command:
@@ -170,7 +170,7 @@ fi
 std::string fishText(const std::string& text) { return "'" + escaped(text, "'\\") + "'"; }
 
 std::string fishValues(const Command& command, const Option& o) {
-  switch (takes(command, o)) {
+  switch (takenBy(command, o)) {
     case Takes::nothing:
       return "";
     case Takes::choice:

@@ -12,24 +12,24 @@
 namespace innermap::tool {
 namespace {
 
-struct Options {
+struct CorrespondCommand {
   std::string a, b, output, sourceOutput, picture;
   CorrespondOptions correspond;
 };
 
 // The file of A with the triangles of the output, where those are not A's own.
-std::string sourceOutputOf(const Options& options) {
+std::string sourceOutputOf(const CorrespondCommand& options) {
   if (!options.sourceOutput.empty()) return options.sourceOutput;
   return options.output.substr(0, options.output.size() - 4) + ".source.ply";
 }
 
-MemoryNeed needOf(const Options& options, std::size_t countA, std::size_t countB) {
+MemoryNeed needOf(const CorrespondCommand& options, std::size_t countA, std::size_t countB) {
   MemoryNeed need = correspondNeed(countA, countB);
   if (!options.picture.empty()) need.bytes = std::max(need.bytes, meshPictureMemory());
   return need;
 }
 
-void run(const Options& options, Context& context) {
+void run(const CorrespondCommand& options, Context& context) {
   context.output(options.output);
   context.output(sourceOutputOf(options), false);
   if (!options.picture.empty()) {
@@ -71,7 +71,7 @@ void run(const Options& options, Context& context) {
 }  // namespace
 
 Command makeCorrespondCommand() {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CorrespondCommand>();
   Command c("correspond", "Lay the surface of one solid onto that of another, of any connectivity");
   c.description(
       std::string(

@@ -16,9 +16,9 @@ namespace innermap::tool {
 namespace {
 
 // The set-up that all frames share.
-class Deformer {
+class GeometryDeformer {
  public:
-  Deformer(const DeformGeometry& job, const Frames& frames, Context& context)
+  GeometryDeformer(const DeformGeometry& job, const Frames& frames, Context& context)
       : job_(job),
         context_(context),
         frames_(frames),
@@ -75,8 +75,8 @@ class Deformer {
 };
 
 // stays: what `write` writes of a frame stays when the others are not made.
-DeformedFrames makeFrames(const DeformGeometry& job, const Frames& frames, Deformer& deformer,
-                          bool stays,
+DeformedFrames makeFrames(const DeformGeometry& job, const Frames& frames,
+                          GeometryDeformer& deformer, bool stays,
                           const std::function<void(std::size_t, const CarriedGeometry&)>& write,
                           Context& context) {
   return deformFrames(frames, job.frames, stays, fmt::format("{:>10} {:>10}", "points", "folded"),
@@ -101,7 +101,7 @@ Points cachePoints(const std::string& input, const CarriedGeometry& carried) {
 
 // All frames in one file.
 DeformedFrames makeCache(const DeformGeometry& job, const Frames& frames, const std::string& path,
-                         Deformer& deformer, Context& context) {
+                         GeometryDeformer& deformer, Context& context) {
   PointCacheLayout layout;
   layout.points = deformer.points();
   layout.framesPerSecond = job.framesPerSecond;
@@ -132,7 +132,7 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, Context& co
   const std::string carry = job.cache() ? "carry " + job.input + " to " + job.output
                                         : carryPlan(job.input, job.output, frames);
   if (!context.begins({framesPlan(settings, frames), carry}, framesNeed(settings, need))) return;
-  Deformer deformer(job, frames, context);
+  GeometryDeformer deformer(job, frames, context);
   const auto writeFile = [&](std::size_t index, const CarriedGeometry& carried) {
     const FramePattern pattern("--output", job.output);
     deformer.writeFile(pattern.path(frames.all[index].number), carried);

@@ -53,7 +53,7 @@ const Json* at(const Json& report, const char* section, const char* key) {
   return value == found->end() ? nullptr : &*value;
 }
 
-std::string textAt(const Json& report, const char* section, const char* key) {
+std::string sectionText(const Json& report, const char* section, const char* key) {
   const Json* value = at(report, section, key);
   return value && value->is_string() ? value->get<std::string>() : "";
 }
@@ -85,7 +85,7 @@ std::string found(const std::string& path, const fs::path& folder) {
 SpaceSettings spaceOf(const Json& report) {
   SpaceSettings space;
   const auto axis = [&](const char* key, std::optional<UpAxis>* up) {
-    const std::string text = textAt(report, "settings", key);
+    const std::string text = sectionText(report, "settings", key);
     if (text == "y" || text == "z") *up = text == "z" ? UpAxis::z : UpAxis::y;
   };
   const auto unit = [&](const char* key, std::optional<double>* metres) {
@@ -108,8 +108,8 @@ AnimationSettings animationOf(const Json& report) {
   const Json* restFrame = at(report, "settings", "rest");
   if (restFrame && restFrame->is_number_integer()) settings.restFrame = restFrame->get<int>();
   settings.space = spaceOf(report);
-  settings.mesh = textAt(report, "settings", "mesh");
-  settings.animation = textAt(report, "settings", "animation");
+  settings.mesh = sectionText(report, "settings", "mesh");
+  settings.animation = sectionText(report, "settings", "animation");
   return settings;
 }
 
@@ -153,8 +153,8 @@ void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path&
 void addSurfaces(Page& page, const Json& report, const fs::path& folder) {
   const std::string map = (folder / "map.ply").string();
   if (fs::exists(map) && tried(page, [&] { showMap(page, readMap(map)); })) return;
-  const std::string source = textAt(report, "source", "path");
-  const std::string target = textAt(report, "target", "path");
+  const std::string source = sectionText(report, "source", "path");
+  const std::string target = sectionText(report, "target", "path");
   if (source.empty()) return page.missing.push_back("surfaces: the report names no mesh");
   Mesh rest;
   if (!tried(page, [&] {
@@ -231,8 +231,8 @@ std::uint64_t memoryOf(const Json& report, const fs::path& folder) {
   for (const GridFile& file : gridFiles(report, folder))
     tried(unsaid, [&] { grids = std::max(grids, readMemory(readVdbInfo(file.path), {})); });
   for (const std::string& path :
-       {(folder / "map.ply").string(), found(textAt(report, "source", "path"), folder),
-        found(textAt(report, "target", "path"), folder)}) {
+       {(folder / "map.ply").string(), found(sectionText(report, "source", "path"), folder),
+        found(sectionText(report, "target", "path"), folder)}) {
     std::error_code none;
     if (const std::uintmax_t size = fs::file_size(path, none); !none)
       surfaces += kMeshByte * static_cast<double>(size);

@@ -12,12 +12,12 @@
 namespace innermap::tool {
 namespace {
 
-struct Options {
+struct SphereOptions {
   std::string mesh, output;
   SurfaceOptions surface;
 };
 
-void run(const Options& options, Context& context) {
+void run(const SphereOptions& options, Context& context) {
   context.output(options.output);
   Mesh mesh = readMeshFile(options.mesh, context);
   const std::size_t vertices = mesh.vertices.size();
@@ -42,7 +42,7 @@ void run(const Options& options, Context& context) {
 }  // namespace
 
 Command makeSphereCommand() {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<SphereOptions>();
   Command c("sphere", "Lay out a closed surface without handles on the unit sphere");
   c.description(
       "Writes the mesh with its vertices on the unit sphere about the origin. No triangle flips, "

@@ -21,7 +21,7 @@ namespace {
 using openvdb::Coord;
 using MapLeaf = openvdb::Vec3STree::LeafNodeType;
 
-constexpr std::size_t kLeaves = 8;  // that a thread takes at a time
+constexpr std::size_t kCheckedLeaves = 8;  // that a thread takes at a time
 // Faces beyond which overlaps are not looked for: they would take seconds, and half a gigabyte.
 constexpr std::size_t kMostFaces = 500000;
 
@@ -132,7 +132,7 @@ std::vector<LeafCells> allCells(const openvdb::Vec3fGrid& map, const openvdb::Fl
   for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
   std::vector<LeafCells> out(leaves.size());
   parallelBlocks(
-      leaves.size(), kLeaves,
+      leaves.size(), kCheckedLeaves,
       [&](std::size_t begin, std::size_t end) {
         const Cells cells(map, levelSet, target, error, origin);
         for (std::size_t i = begin; i < end; ++i) out[i] = cells.of(*leaves[i]);

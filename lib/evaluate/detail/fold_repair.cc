@@ -38,7 +38,7 @@ constexpr double kSkinStiffness = 30;
 // Voxels have to be right side out, not well shaped: over five maps between strangers a third of
 // the seconds of UntangleSettings' own, for the same voxels repaired, moved as far.
 constexpr double kHaste = 0.9, kLeastStepGain = 1e-4;
-constexpr std::size_t kLeaves = 8;  // that a thread takes at a time
+constexpr std::size_t kRepairedLeaves = 8;  // that a thread takes at a time
 
 Mat3 restOf(const std::array<int, 4>& tet) {
   Mat3 edges{};
@@ -398,7 +398,7 @@ std::vector<Coord> foldedVoxels(const openvdb::Vec3fGrid& map, const openvdb::Fl
   std::vector<const openvdb::Vec3STree::LeafNodeType*> leaves;
   for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
   std::vector<std::vector<Coord>> parts(leaves.size());
-  parallelBlocks(leaves.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
+  parallelBlocks(leaves.size(), kRepairedLeaves, [&](std::size_t begin, std::size_t end) {
     const Positions none;
     const Voxels voxels(map, levelSet, settings, none);
     auto determinants = jacobian.getConstAccessor();

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kBoundary = 10000, kFewTriangles = 10000;
 constexpr double kInTarget = 2000;
-constexpr double kThinnest = 0.01;     // volume over the diagonal's cube, for the lattice's spacing
+// Volume over the diagonal's cube, for the lattice's spacing.
+constexpr double kThinnestSolid = 0.01;
 constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal
 
 SolidFigures figuresOf(const Solid& solid) {
@@ -92,7 +93,7 @@ DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
                              const TargetShape& target, const BoundaryCheckSettings& settings) {
   const WindingNumber image = imageOf(map, pair.solid().surface(), settings);
   const Box3 box = boundingBox(pair.target.mesh(pair.solid(), ""));
-  const double volume = std::max(target.volume(), kThinnest * std::pow(box.diagonal(), 3));
+  const double volume = std::max(target.volume(), kThinnestSolid * std::pow(box.diagonal(), 3));
   Points deep =
       stratifiedPoints(box, std::cbrt(volume / kInTarget),
                        {[&](const Vec3& p) { return target.inside(p); },

@@ -25,7 +25,7 @@ constexpr double kWorthIt = 0.5;
 // Steps of a map beyond which a proof that nobody asked for in particular looks at fewer cells, by
 // the square: each takes time in proportion to the steps, and less of them is proven.
 constexpr double kManySteps = 8;
-constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
+constexpr double kInsideSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 
 // A fit with a number of charges.
 FitOutcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSettings& shell) {
@@ -198,7 +198,7 @@ const Points& MapFitter::inside() {
 }
 
 MappedPoints MapFitter::insideOf(const ComposedMap& map) {
-  return mapPoints(map, inside(), kSumAccuracy * pair_.target.diagonal);
+  return mapPoints(map, inside(), kInsideSumAccuracy * pair_.target.diagonal);
 }
 
 bool MapFitter::roomForSteps() {

@@ -9,7 +9,7 @@
 namespace innermap {
 namespace {
 
-constexpr double kTouching = 1e-9;  // of the diagonal
+constexpr double kTouchingSurfaces = 1e-9;  // of the diagonal
 
 using Samples = std::vector<SurfacePoint>;
 
@@ -29,7 +29,7 @@ std::vector<std::size_t> shuffledVertices(const SourceBoundary& source, std::uin
   for (const Triangle& t : mesh.triangles)
     for (const int v : t)
       if (static_cast<std::size_t>(v) < used.size()) used[v] = 1;
-  const double touching = kTouching * solid.diagonal();
+  const double touching = kTouchingSurfaces * solid.diagonal();
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   const CounterRandom random(seed, static_cast<std::uint64_t>(Stream::vertices));
   for (std::size_t v = 0; v < used.size(); ++v)

@@ -9,7 +9,7 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kPlaces = 16;
+constexpr std::size_t kListedCells = 16;
 
 constexpr int kDigits = 6;
 
@@ -25,7 +25,8 @@ std::string sign(bool mirrored) { return mirrored ? "det J < 0" : "det J > 0"; }
 
 Points centersOf(const std::vector<ProofCell>& cells) {
   Points out;
-  for (std::size_t i = 0; i < std::min(kPlaces, cells.size()); ++i) out.push_back(cells[i].center);
+  for (std::size_t i = 0; i < std::min(kListedCells, cells.size()); ++i)
+    out.push_back(cells[i].center);
   return out;
 }
 

@@ -82,7 +82,7 @@ constexpr double kStepSources = 24000, kSmoothedSources = 15000;
 // Of the target's diagonal: sums, and where points inside go (a share of the tolerance where that
 // is less); the mesh about an intermediate shape.
 constexpr double kSumShare = 2e-3;
-constexpr double kSumAccuracy = 3e-6, kChord = 1e-3;
+constexpr double kStepSumAccuracy = 3e-6, kChord = 1e-3;
 
 struct Step {
   MapStep record;
@@ -209,7 +209,7 @@ class StepFitter {
  private:
   CarriedSettings carrySettings() const {
     CarriedSettings s;
-    s.accuracy = std::min(kSumAccuracy, kSumShare * settings_.tolerance) * unit_;
+    s.accuracy = std::min(kStepSumAccuracy, kSumShare * settings_.tolerance) * unit_;
     s.chord = std::min(kChord, settings_.tolerance) * unit_;
     s.seed = settings_.seed;
     return s;
@@ -305,7 +305,7 @@ class StepFitter {
     const MappedPoints& of(const HarmonicField& field) {
       if (!field_ || field_->sources().data() != field.sources().data()) {
         field_ = field;
-        points_ = mapPoints(HarmonicMap(field), fitter_.inside_, kSumAccuracy * fitter_.unit_);
+        points_ = mapPoints(HarmonicMap(field), fitter_.inside_, kStepSumAccuracy * fitter_.unit_);
       }
       return points_;
     }

@@ -13,7 +13,6 @@ namespace innermap {
 namespace {
 
 constexpr char kStage[] = "drawing the surfaces";
-constexpr Rgb kPaper{1, 1, 1}, kInk{0.13f, 0.14f, 0.16f};
 constexpr int kMargin = 24, kTitle = 44, kFooter = 40, kSubsamples = 3;
 constexpr int kTogether = 1 << 19;  // subsamples that are coloured together
 constexpr std::size_t kRows = 16;   // of them that a thread looks at together
@@ -143,11 +142,6 @@ class Normals {
   Points vertex_;
 };
 
-double encoded(double v) {  // sRGB's transfer function (IEC 61966-2-1)
-  v = std::clamp(v, 0.0, 1.0);
-  return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
-
 // A key light over the viewer's left shoulder, a weak one from the right, and the sky.
 double light(Vec3 normal, const View& view) {
   if (dot(normal, view.towards) < 0) normal = -normal;
@@ -213,7 +207,7 @@ void drawRows(const PictureSurface& surface, const View& view, const Normals& no
         if (covered[x] == 0) continue;
         Rgb colour;
         for (int c = 0; c < 3; ++c)
-          colour[static_cast<std::size_t>(c)] = static_cast<float>(encoded(sum[x][c] / covered[x]));
+          colour[static_cast<std::size_t>(c)] = encoded(sum[x][c] / covered[x]);
         picture.blend(x0 + static_cast<int>(x), y0 + firstPixelRow + static_cast<int>(y), colour,
                       static_cast<float>(covered[x]) / (kSubsamples * kSubsamples));
       }

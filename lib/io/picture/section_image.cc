@@ -15,11 +15,11 @@
 namespace innermap {
 namespace {
 
-constexpr Rgb kPaper{1, 1, 1}, kOutside{0.93f, 0.93f, 0.935f}, kInk{0.13f, 0.14f, 0.16f},
-    kFaint{0.42f, 0.44f, 0.47f}, kOutline{0.2f, 0.21f, 0.24f}, kBroken{0, 0, 0},
-    kNoVoxel{0.76f, 0.77f, 0.78f}, kFolded{0.8f, 0, 0.75f};
-constexpr int kMargin = 28, kTitle = 78, kFooter = 22, kBarGap = 26, kBarWidth = 26, kLabels = 120,
-              kSubsamples = 3;
+constexpr Rgb kOutside{0.93f, 0.93f, 0.935f}, kFaint{0.42f, 0.44f, 0.47f},
+    kOutline{0.2f, 0.21f, 0.24f}, kBroken{0, 0, 0}, kNoVoxel{0.76f, 0.77f, 0.78f},
+    kFolded{0.8f, 0, 0.75f};
+constexpr int kSectionMargin = 28, kSectionTitle = 78, kSectionFooter = 22, kBarGap = 26,
+              kBarWidth = 26, kLabels = 120, kSectionSubsamples = 3;
 // A logarithmic scale shows what is over kManyTimes apart, and no more than down to kLeastShown of
 // the largest. Ratios to 1 that the colours' ends stand for, at least and at most.
 constexpr double kManyTimes = 100, kLeastShown = 1e-4, kLeastRatio = 1.1, kMostRatio = 16;
@@ -147,21 +147,14 @@ Layout layoutFor(const SliceFrame& frame, int pixels, bool bar) {
   l.height = std::max(1, static_cast<int>(std::lround(h * scale)));
   // Room for the title and for a bar that can be read, however thin the section is.
   const int room = std::max(l.width, bar ? 480 : 600), tall = std::max(l.height, 300);
-  l.x = kMargin + (room - l.width) / 2;
-  l.y = kTitle + (tall - l.height) / 2;
-  l.barX = kMargin + room + kBarGap;
+  l.x = kSectionMargin + (room - l.width) / 2;
+  l.y = kSectionTitle + (tall - l.height) / 2;
+  l.barX = kSectionMargin + room + kBarGap;
   l.barHeight = std::min(tall, std::max(300, tall * 3 / 4));
-  l.barY = kTitle + (tall - l.barHeight) / 2;
-  l.totalWidth = bar ? l.barX + kBarWidth + kLabels : l.barX - kBarGap + kMargin;
-  l.totalHeight = kTitle + tall + kFooter + kMargin;
+  l.barY = kSectionTitle + (tall - l.barHeight) / 2;
+  l.totalWidth = bar ? l.barX + kBarWidth + kLabels : l.barX - kBarGap + kSectionMargin;
+  l.totalHeight = kSectionTitle + tall + kSectionFooter + kSectionMargin;
   return l;
-}
-
-// sRGB's transfer function (IEC 61966-2-1) on [0, 1].
-float encoded(float v) {
-  if (!(v > 0)) return 0;
-  if (v >= 1) return 1;
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }
 
 // The colour at a place of the cut inside the solid.
@@ -177,7 +170,7 @@ Rgb colourAt(const SectionSampler& sampler, const SectionCut& cut, const Section
   for (std::size_t c = 0; c < 3; ++c) {
     const float linear = *sampler.value(x, y, c);
     if (!std::isfinite(linear)) return kBroken;
-    rgb[c] = encoded(static_cast<float>((linear - r.lower) / (r.upper - r.lower)));
+    rgb[c] = encoded((linear - r.lower) / (r.upper - r.lower));
   }
   return rgb;
 }
@@ -186,12 +179,12 @@ Rgb colourAt(const SectionSampler& sampler, const SectionCut& cut, const Section
 Rgb pixelColour(const SectionSampler& sampler, const SectionCut& cut, const SectionResult& r,
                 Colormap map, double x, double y, double dx, double dy) {
   Rgb sum{0, 0, 0};
-  for (int k = 0; k < kSubsamples * kSubsamples; ++k) {
-    const int column = k % kSubsamples, row = k / kSubsamples;
-    const double sx = x + dx * ((column + 0.5) / kSubsamples - 0.5);
-    const double sy = y + dy * ((row + 0.5) / kSubsamples - 0.5);
+  for (int k = 0; k < kSectionSubsamples * kSectionSubsamples; ++k) {
+    const int column = k % kSectionSubsamples, row = k / kSectionSubsamples;
+    const double sx = x + dx * ((column + 0.5) / kSectionSubsamples - 0.5);
+    const double sy = y + dy * ((row + 0.5) / kSectionSubsamples - 0.5);
     const Rgb colour = sampler.inside(sx, sy) ? colourAt(sampler, cut, r, map, sx, sy) : kOutside;
-    for (int c = 0; c < 3; ++c) sum[c] += colour[c] / (kSubsamples * kSubsamples);
+    for (int c = 0; c < 3; ++c) sum[c] += colour[c] / (kSectionSubsamples * kSectionSubsamples);
   }
   return sum;
 }
@@ -272,22 +265,22 @@ std::string shownName(const openvdb::GridBase& grid, const SectionSettings& s) {
 void drawText(const SectionCut& cut, const Layout& l, const SectionResult& r,
               const std::string& name, Picture& picture) {
   const SliceFrame& f = cut.frame;
-  picture.text(kMargin, 36, name, 24, kInk);
+  picture.text(kSectionMargin, 36, name, 24, kInk);
   const double share = f.layers() > 1 ? (cut.layer - f.box.min()[f.axis]) / (f.layers() - 1) : 0.5;
   picture.text(
-      kMargin, 60,
+      kSectionMargin, 60,
       fmt::format("section at {} = {} ({:.0f}% of the box); values {} to {}", axisName(f.axis),
                   shortNumber(r.position), 100 * share, shortNumber(r.least), shortNumber(r.most)),
       15, kFaint);
-  const int bottom = picture.height() - kMargin + 8;
-  picture.text(kMargin, bottom,
+  const int bottom = picture.height() - kSectionMargin + 8;
+  picture.text(kSectionMargin, bottom,
                fmt::format("{} to the right, {} up, {} x {} voxels of {}", axisName(f.columnAxis),
                            axisName(f.rowAxis), f.columns(), f.rows(),
                            shortNumber(f.transform->voxelSize()[f.columnAxis])),
                14, kFaint);
-  picture.text(picture.width() - kMargin, bottom, "innermap", 14, kFaint, Align::right);
-  picture.frame(kMargin, kTitle, l.barX - kBarGap, picture.height() - kFooter - kMargin,
-                {0.8f, 0.8f, 0.82f});
+  picture.text(picture.width() - kSectionMargin, bottom, "innermap", 14, kFaint, Align::right);
+  picture.frame(kSectionMargin, kSectionTitle, l.barX - kBarGap,
+                picture.height() - kSectionFooter - kSectionMargin, {0.8f, 0.8f, 0.82f});
 }
 
 void checkSettings(const SectionSettings& s) {
@@ -352,8 +345,8 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
   result.width = picture.width();
   result.height = picture.height();
   drawText(cut, layout, result, shownName(*grid, settings), picture);
-  picture.fill(kMargin, kTitle, layout.barX - kBarGap, picture.height() - kFooter - kMargin,
-               kOutside);
+  picture.fill(kSectionMargin, kSectionTitle, layout.barX - kBarGap,
+               picture.height() - kSectionFooter - kSectionMargin, kOutside);
   drawSection(cut, layout, result, settings, picture);
   if (!settings.colour) drawBar(layout, result, settings.colormap, picture);
   picture.write(path);

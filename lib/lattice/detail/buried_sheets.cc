@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kStage[] = "looking for buried sheets";
 // Lengths in spacings.
-constexpr float kFar = std::numeric_limits<float>::max();
+constexpr float kUnreached = std::numeric_limits<float>::max();
 constexpr double kApart = 0.35;       // of samples of the sheets
 constexpr double kMostSamples = 4e6;  // sparser ones where the sheets have so much area
 constexpr double kLinked = 0.9;       // samples of one patch
@@ -128,7 +128,7 @@ std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs,
                                 const std::vector<float>& depth) {
   reportProgress(kStage, 0);
   const BccLattice& lattice = signs.lattice;
-  std::vector<float> nearest(signs.side.size(), kFar), order(signs.side.size(), kFar);
+  std::vector<float> nearest(signs.side.size(), kUnreached), order(signs.side.size(), kUnreached);
   for (const Sample& s : sheets(solid, signs, depth)) {
     const std::size_t at = lattice.nearest(s.at);
     for (int d = -1; d < kDirections; ++d) {
@@ -144,7 +144,7 @@ std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs,
   reportProgress(kStage, 0.5);
   const std::vector<float> away = distancesInside(signs, std::move(nearest));
   for (std::size_t n = 0; n < order.size(); ++n)
-    if (order[n] == kFar) order[n] = away[n];
+    if (order[n] == kUnreached) order[n] = away[n];
   reportProgress(kStage, 1);
   return order;
 }

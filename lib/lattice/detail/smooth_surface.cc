@@ -14,12 +14,12 @@ namespace {
 // Measured with maps of bodies that cross themselves: five rounds take as few charges as three and
 // round edges more; where many vertices come to the limit of their way, that makes new teeth.
 constexpr int kRounds = 3;
-constexpr double kShare = 0.5;           // of the way to the neighbours' mean, each round
-constexpr double kMostMoved = 1;         // spacings
-constexpr double kOff = 0.1;             // spacings from the solid's surface
-constexpr double kSharpestCosine = 0.5;  // of normals of triangles around a vertex
-constexpr double kBesideCrossings = 4;   // spacings from where the mesh runs through itself
-constexpr double kApart = 0.5;           // spacings between points of those lines
+constexpr double kShare = 0.5;            // of the way to the neighbours' mean, each round
+constexpr double kMostMoved = 1;          // spacings
+constexpr double kOff = 0.1;              // spacings from the solid's surface
+constexpr double kSharpestCosine = 0.5;   // of normals of triangles around a vertex
+constexpr double kBesideCrossings = 4;    // spacings from where the mesh runs through itself
+constexpr double kLinePointsApart = 0.5;  // spacings between points of those lines
 
 using Marks = std::vector<std::uint8_t>;  // #vertices
 
@@ -50,7 +50,8 @@ bool isSharp(const Mesh& mesh, const Fan& fan) {
 Marks roughVertices(const Solid& solid, double spacing, const Mesh& mesh,
                     const std::vector<Fan>& fans) {
   PointGrid crossings(kBesideCrossings * spacing);
-  for (const CrossingPoint& p : exposedCrossings(solid, kApart * spacing)) crossings.add(p.place);
+  for (const CrossingPoint& p : exposedCrossings(solid, kLinePointsApart * spacing))
+    crossings.add(p.place);
   Marks rough(fans.size());
   parallelBlocks(
       fans.size(), 256,

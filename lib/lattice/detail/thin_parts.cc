@@ -9,8 +9,8 @@
 namespace innermap {
 namespace {
 
-constexpr char kStage[] = "looking for thin parts";
-constexpr double kReach = 0.56;  // spacings; sqrt(5) / 4 is the lattice's covering radius
+constexpr char kThinPartsStage[] = "looking for thin parts";
+constexpr double kLatticeReach = 0.56;  // spacings; sqrt(5) / 4 is the lattice's covering radius
 
 class Finder {
  public:
@@ -24,10 +24,10 @@ class Finder {
     const auto wrong = [&](std::size_t node) {
       return (signs_.side[node] == NodeSide::inside) != (sign < 0);
     };
-    if (!wrong(signs_.lattice.nearest(x + kReach * h * into))) return -1;
+    if (!wrong(signs_.lattice.nearest(x + kLatticeReach * h * into))) return -1;
     // How far a ball that touches the surface in x can be blown up, by halving.
     constexpr int kHalvings = 10;
-    double depth = 0, beyond = kReach * h;
+    double depth = 0, beyond = kLatticeReach * h;
     Solid::Closest other{};
     other.onSurface.triangle = -1;
     for (int k = 0; k < kHalvings; ++k) {
@@ -105,7 +105,7 @@ ThinParts thinParts(const Solid& solid, const LatticeSigns& signs) {
         parts.walls.insert(parts.walls.end(), own.walls.begin(), own.walls.end());
         parts.gaps.insert(parts.gaps.end(), own.gaps.begin(), own.gaps.end());
       },
-      kStage);
+      kThinPartsStage);
   for (auto* nodes : {&parts.walls, &parts.gaps}) {
     std::sort(nodes->begin(), nodes->end());
     nodes->erase(std::unique(nodes->begin(), nodes->end()), nodes->end());

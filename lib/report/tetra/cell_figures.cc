@@ -10,8 +10,6 @@
 namespace innermap {
 namespace {
 
-constexpr auto kDiagonals = FigureUnit::diagonals;
-
 Figures summaryFigures(const QualitySummary& s, FigureUnit unit) {
   const std::vector<double> cells(s.histogram.begin(), s.histogram.end());
   return together({{{"least", s.least, "least", "", unit},

@@ -6,14 +6,14 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kCoarseBlock = 1024;
 
 }  // namespace
 
 bool startFrom(const CoarseLevel& level, const GuideSurface& surface, const CellMesh& mesh,
                CarriedCells& cells, std::size_t& inverted) {
   CarriedCells inside = cells, all = cells;
-  parallelBlocks(cells.positions.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallelBlocks(cells.positions.size(), kCoarseBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const CellPoint at = level.locator.locate(mesh.vertices[v]);
       if (at.tetrahedron < 0) continue;

@@ -22,7 +22,7 @@ constexpr std::size_t kPointsAVertex = 4;
 constexpr int kUntangling = 12;  // rounds
 constexpr double kHeavier = 2, kLighter = 0.8, kHeaviest = 1000;
 constexpr double kEnough = 1.2;  // times the goal: such corners count less again
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kShapingBlock = 256;
 
 double scaledDeterminant(const Points& at, const Tetrahedron& t) {
   const Vec3 a = at[t[1]] - at[t[0]], b = at[t[2]] - at[t[0]], c = at[t[3]] - at[t[0]];
@@ -111,7 +111,7 @@ class Shaping {
   void placeSprings() {
     const std::size_t skins = hexes_.skin.size();
     patch_.springs.assign(skins, {});
-    parallelBlocks(skins, kBlock, [&](std::size_t begin, std::size_t end) {
+    parallelBlocks(skins, kShapingBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
         const int v = hexes_.skin[s].outer;
         const ClosestPoint found =
@@ -130,7 +130,7 @@ class Shaping {
     const Points& at = patch_.vertices;
     const TriangleTree faces(at, boundary_);
     std::vector<ClosestPoint> feet(points_.size());
-    parallelBlocks(points_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallelBlocks(points_.size(), kShapingBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) feet[p] = faces.closest(points_[p]);
     });
     std::vector<double> weight(at.size(), 0);
@@ -157,7 +157,7 @@ class Shaping {
   // What is below the goal counts more and more; what is well above it, in the end no more than
   // at first.
   void weigh() {
-    parallelBlocks(patch_.tets.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallelBlocks(patch_.tets.size(), kShapingBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const double now = scaledDeterminant(patch_.vertices, patch_.tets[t]);
         double& weight = patch_.weights[t];

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kPasses = 12;
 constexpr int kLoosePasses = 8;  // in which those about one that does not arrive slide again
-constexpr int kHalvings = 5;
+constexpr int kLandingHalvings = 5;
 
 class Lander {
  public:
@@ -37,7 +37,7 @@ class Lander {
       return true;
     }
     double share = 0.5;
-    for (int k = 0; k < kHalvings; ++k, share /= 2)
+    for (int k = 0; k < kLandingHalvings; ++k, share /= 2)
       if (goodAt(v, from + share * (found.position - from), floor)) return false;
     at = from;
     return false;

@@ -17,7 +17,7 @@ namespace {
 
 using openvdb::Vec3fGrid;
 using Leaf = openvdb::Vec3STree::LeafNodeType;
-using Leaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
+using MaskLeaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
 
 constexpr double kReach = 1.5;                 // spacings; 1% of the rest is left there
 constexpr double kExactDepth = 1;              // voxels: what interpolation at the surface sees
@@ -59,7 +59,7 @@ class Continuation {
     const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
     for (std::size_t g = 0; g < count; ++g) grids_.push_back(gridOn(*region));
     evaluate(settings_.spacing > 0 ? *insideOf(*region) : *region);
-    const Leaves leaves(region->tree());
+    const MaskLeaves leaves(region->tree());
     for (std::size_t begin = 0; begin < leaves.leafCount(); begin += kLeavesTogether) {
       reportProgress("meeting the surface",
                      static_cast<double>(begin) / static_cast<double>(leaves.leafCount()));
@@ -115,7 +115,7 @@ class Continuation {
     return {p.x(), p.y(), p.z()};
   }
 
-  std::vector<Near> nearIn(const Leaves& leaves, std::size_t l) const {
+  std::vector<Near> nearIn(const MaskLeaves& leaves, std::size_t l) const {
     std::vector<Near> out;
     const auto& leaf = leaves.leaf(l);
     const double reach =
@@ -138,7 +138,7 @@ class Continuation {
   }
 
   // value += factor (boundary - field at the closest point); outside: = boundary.
-  void meetBoundary(const Leaves& leaves, std::size_t begin, std::size_t end) {
+  void meetBoundary(const MaskLeaves& leaves, std::size_t begin, std::size_t end) {
     std::vector<std::vector<Near>> near(end - begin);
     parallelBlocks(near.size(), 2, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) near[i] = nearIn(leaves, begin + i);

@@ -18,14 +18,14 @@ using openvdb::Vec3fGrid;
 using Accessor = Vec3fGrid::ConstAccessor;
 using Leaves = openvdb::tree::LeafManager<const openvdb::Vec3STree>;
 
-struct Axes {
+struct VoxelAxes {
   Vec2 a, b;
 };
 
 double squared(const Vec2& d) { return d.x * d.x + d.y * d.y; }
 
 // Axes of the ellipse whose second moments are those of the three steps.
-Axes axesOf(const Vec2 (&steps)[3]) {
+VoxelAxes axesOf(const Vec2 (&steps)[3]) {
   double xx = 0, yy = 0, xy = 0;
   for (const Vec2& d : steps) {
     xx += d.x * d.x;
@@ -40,7 +40,7 @@ Axes axesOf(const Vec2 (&steps)[3]) {
 
 // at(coord): the coordinates at a voxel, nothing where there are none.
 template <class At>
-Axes footprint(const Coord& ijk, const Vec2& uv, const At& at) {
+VoxelAxes footprint(const Coord& ijk, const Vec2& uv, const At& at) {
   Vec2 steps[3];
   for (int axis = 0; axis < 3; ++axis) {
     std::optional<Vec2> nearest;
@@ -112,7 +112,7 @@ Mixture mixture(const Coord& ijk, const std::vector<GroupReader>& groups,
     }
     const double w = v.weight - kLeastChartWeight;
     if (!(w > 0)) continue;
-    const Axes axes = footprint(ijk, v.uv, [&](const Coord& c) { return g.uvAt(c); });
+    const VoxelAxes axes = footprint(ijk, v.uv, [&](const Coord& c) { return g.uvAt(c); });
     out.colour += w * texture(v.uv, axes.a, axes.b);
     sum += w;
   }
@@ -138,7 +138,7 @@ Vec3fGrid::Ptr lookUpColours(const Vec3fGrid& uv, const TextureLookup& texture) 
           auto* leaf = out->tree().probeLeaf(leaves.leaf(l).origin());
           for (auto it = leaves.leaf(l).cbeginValueOn(); it; ++it) {
             const Vec2 here{(*it)[0], (*it)[1]};
-            const Axes axes = footprint(it.getCoord(), here, at);
+            const VoxelAxes axes = footprint(it.getCoord(), here, at);
             leaf->setValueOnly(it.pos(), toVec3f(texture(here, axes.a, axes.b)));
           }
         }

@@ -13,6 +13,12 @@
 
 namespace innermap {
 
+// Samplers reach over two voxels at most, and the boundary error over about one more.
+constexpr int kContinuedLayers = 3;
+// In folds the determinant passes through 0; a voxel there is filled from no less of the source
+// than this, or one voxel would hold the mass of all.
+constexpr double kLeastDeterminant = 1e-2;
+
 // Where a voxel's value comes from, and the derivative of where things go with respect to where
 // they were.
 struct Site {

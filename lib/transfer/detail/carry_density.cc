@@ -20,7 +20,7 @@ using MaskReader = openvdb::tree::ValueAccessor<const openvdb::MaskTree, false>;
 
 constexpr char kStage[] = "carrying the densities";
 constexpr int kCubeCells = 128;                // along each side of a cube
-constexpr std::size_t kTogether = 256;         // leaves of cells
+constexpr std::size_t kLeavesTogether = 256;   // leaves of cells
 constexpr std::uint64_t kParts = 100'000'000;  // bytes of what is summed by itself, about
 // An edge that is so many times as long as the derivative at its ends says lies across a jump: its
 // ends belong to parts of the solid that touch in the source and do not in the target.
@@ -58,8 +58,6 @@ bool isTorn(const std::array<Vec3, 8>& images, const std::array<float, 8>& stret
     }
   return false;
 }
-
-int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
 int cubeEdge(int parts) { return kCubeCells / parts; }
 
@@ -216,14 +214,14 @@ DepositedDensity DensityCarry::run() {
   const PartOfStage carrying(kMapping, 1);
   const std::size_t count = nodes_.leaves().size();
   std::vector<Coord> torn;
-  for (std::size_t begin = 0; begin < count; begin += kTogether) {
-    std::vector<Part> parts(std::min(kTogether, count - begin));
+  for (std::size_t begin = 0; begin < count; begin += kLeavesTogether) {
+    std::vector<Part> parts(std::min(kLeavesTogether, count - begin));
     parallelBlocks(parts.size(), 1,
                    [&](std::size_t i, std::size_t) { addLeaf(begin + i, parts[i]); });
     for (const Part& part : parts) torn.insert(torn.end(), part.torn.begin(), part.torn.end());
     take(parts);
-    reportProgress(kStage,
-                   static_cast<double>(begin + kTogether) / static_cast<double>(count + kTogether));
+    reportProgress(kStage, static_cast<double>(begin + kLeavesTogether) /
+                               static_cast<double>(count + kLeavesTogether));
   }
   carryTorn(torn);
   return std::move(made_);

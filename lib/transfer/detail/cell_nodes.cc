@@ -13,8 +13,6 @@ using Leaf = openvdb::MaskTree::LeafNodeType;
 
 constexpr std::size_t kTogether = std::size_t{1} << 18;  // points that are mapped together
 
-int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
 // Corners of the cells of some voxels.
 openvdb::MaskTree nodesOf(const openvdb::MaskTree& voxels, int parts) {
   openvdb::MaskTree out;

@@ -13,6 +13,8 @@
 
 namespace innermap {
 
+inline int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
 // A linear transform's way from world units to indices.
 struct Lattice {
   Mat3 linear;

@@ -11,7 +11,7 @@ namespace {
 // small whole numbers, of any length since harmonics are homogeneous: conditions are 1, 2.9
 // and 4.1.
 constexpr int kMost = 2 * kHarmonicDegrees + 1;
-constexpr int kSamples[kHarmonicDegrees][kMost][3] = {
+constexpr int kDirections[kHarmonicDegrees][kMost][3] = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     {{0, 1, 1}, {1, -1, 0}, {0, 1, -1}, {1, 0, 1}, {1, 1, 0}},
     {{1, 1, -1}, {1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, -1}}};
@@ -19,7 +19,7 @@ constexpr int kSamples[kHarmonicDegrees][kMost][3] = {
 using Square = std::array<std::array<double, kMost>, kMost>;
 
 Vec3 sampleOf(int degree, int i) {
-  const int* s = kSamples[degree - 1][i];
+  const int* s = kDirections[degree - 1][i];
   return {static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
 }
 

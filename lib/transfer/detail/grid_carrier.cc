@@ -17,12 +17,6 @@
 namespace innermap {
 namespace {
 
-// Samplers reach over two voxels at most, and the boundary error over about one more.
-constexpr int kContinuedLayers = 3;
-// In folds the determinant passes through 0; a voxel there is filled from no less of the source
-// than this, or one voxel would hold the mass of all.
-constexpr double kLeastDeterminant = 1e-2;
-
 bool isAttribute(const openvdb::GridBase& grid, bool density) {
   return !density && grid.getGridClass() != openvdb::GRID_LEVEL_SET &&
          grid.getGridClass() != openvdb::GRID_FOG_VOLUME;

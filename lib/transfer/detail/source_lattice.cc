@@ -16,10 +16,10 @@
 namespace innermap {
 namespace {
 
-constexpr int kAcross = 128;   // voxels along the longest side of the solid
-constexpr int kFewest = 32;    // when much around it has to be covered too
-constexpr double kMost = 2e6;  // voxels of the lattice, about; starts need not be good
-constexpr double kSkin = 2;    // voxels
+constexpr int kAcross = 128;         // voxels along the longest side of the solid
+constexpr int kFewest = 32;          // when much around it has to be covered too
+constexpr double kMostVoxels = 2e6;  // voxels of the lattice, about; starts need not be good
+constexpr double kSkin = 2;          // voxels
 constexpr std::uint64_t kVoxelBytes = 12 + 4 + 1;
 
 Box3 worldBox(const openvdb::CoordBBox& box, const openvdb::math::Transform& transform) {
@@ -114,7 +114,7 @@ int latticeResolution(const Solid& solid, const OutsideSettings& outside,
     double volume = extentOf(grids);
     if (!outside.fadeTo)
       volume = std::min(volume, (extent.x + margin) * (extent.y + margin) * (extent.z + margin));
-    most = static_cast<int>(longest / std::cbrt(volume / kMost));
+    most = static_cast<int>(longest / std::cbrt(volume / kMostVoxels));
   }
   return std::clamp(static_cast<int>(std::min<double>(longest / finest, most)), kFewest, kAcross);
 }

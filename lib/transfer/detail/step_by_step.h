@@ -5,6 +5,10 @@
 
 namespace innermap {
 
+// Targets that are worth it: where more are not inverted the map folds, and there is nothing to
+// find.
+constexpr std::size_t kMostStepByStep = 2000;
+
 struct StepByStepSettings {
   double tolerance = 0;  // of each step, world units
 };

@@ -11,11 +11,8 @@
 namespace innermap {
 namespace {
 
-constexpr int kContinuedLayers = 3;
-constexpr double kLeastDeterminant = 1e-2;  // as of densities: in folds it passes through 0
-
 // Row and column of the six parts in the order xx, yy, zz, xy, yz, xz.
-constexpr std::array<std::array<int, 2>, 6> kParts{
+constexpr std::array<std::array<int, 2>, 6> kTensorParts{
     {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
 
 Mat3 movedTensor(const Mat3& s, const Mat3& a, bool stress) {
@@ -72,7 +69,7 @@ class TensorCarrier : public Carrier {
     if constexpr (kIsVector<Value>) {
       for (int c = 0; c < 3; ++c) tensor[k][c] = value[c];
     } else {
-      const auto [r, c] = kParts[k];
+      const auto [r, c] = kTensorParts[k];
       tensor[r][c] = tensor[c][r] = value;
     }
   }
@@ -81,7 +78,7 @@ class TensorCarrier : public Carrier {
     if constexpr (kIsVector<Value>) {
       return Value(openvdb::Vec3d(tensor[k][0], tensor[k][1], tensor[k][2]));
     } else {
-      return static_cast<Value>(tensor[kParts[k][0]][kParts[k][1]]);
+      return static_cast<Value>(tensor[kTensorParts[k][0]][kTensorParts[k][1]]);
     }
   }
 

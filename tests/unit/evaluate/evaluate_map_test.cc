@@ -12,7 +12,6 @@
 namespace innermap {
 namespace {
 
-using test::affineMap;
 using test::affineOf;
 using test::chargedMap;
 using test::kIdentity;
@@ -58,7 +57,7 @@ double integral(const Function& f) {
 
 TEST(EvaluateMap, ReflectionIsFoldedEverywhere) {
   const MapGrids g =
-      evaluate(affineMap({{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}), Solid(cube()), 24);
+      evaluate(test::affineMap({{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}), Solid(cube()), 24);
   EXPECT_NEAR(g.foldedFraction, 1, 1e-12);
   EXPECT_NEAR(g.jacobianMin, -1, 1e-12);
 }

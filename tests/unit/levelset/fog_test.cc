@@ -11,7 +11,7 @@ namespace {
 
 using openvdb::FloatGrid;
 
-LevelSetSettings resolution(int n) { return {.resolution = n}; }
+LevelSetSettings fogResolution(int n) { return {.resolution = n}; }
 
 TEST(Fog, CellFractionAgreesWithCounting) {
   const CounterRandom random(6, 6);
@@ -58,7 +58,7 @@ TEST(FogRelease, VolumeConvergesAtSecondOrder) {
     const Solid solid(mesh);
     std::vector<double> errors;
     for (const int n : {20, 40, 80}) {
-      const FloatGrid::Ptr levelSet = makeLevelSet(solid, resolution(n));
+      const FloatGrid::Ptr levelSet = makeLevelSet(solid, fogResolution(n));
       const double volume = fogVolume(*makeFog(*levelSet));
       errors.push_back(std::abs(volume / solid.volume() - 1));
       EXPECT_NEAR(insideVolume(*levelSet), volume, 1e-7 * volume);  // a fog's values are floats
@@ -71,7 +71,7 @@ TEST(FogRelease, VolumeConvergesAtSecondOrder) {
 
 TEST(Fog, IsAFogVolume) {
   const Solid solid(shapes::torus(60, 30));
-  const FloatGrid::Ptr levelSet = makeLevelSet(solid, resolution(64));
+  const FloatGrid::Ptr levelSet = makeLevelSet(solid, fogResolution(64));
   const FloatGrid::Ptr fog = makeFog(*levelSet);
   EXPECT_EQ(fog->getName(), "density");
   EXPECT_EQ(fog->getGridClass(), openvdb::GRID_FOG_VOLUME);

@@ -158,7 +158,7 @@ TEST(SolidRelease, ScaleAndPlaceDoNotMatter) {
   ASSERT_TRUE(solid.overlaps());
   for (const double scale : {1e-3, 1.0, 1e3}) {
     for (const double far : {0.0, 1000.0}) {
-      SCOPED_TRACE(testing::Message() << "scale " << scale << " far " << far);
+      SCOPED_TRACE(::testing::Message() << "scale " << scale << " far " << far);
       const Vec3 shift = scale * far * solid.diagonal() * Vec3{0.6, -0.64, 0.48};
       const Solid moved(shapes::transformed(mesh, scale, shift));
       EXPECT_NEAR(moved.volume() / std::pow(scale, 3), solid.volume(), 1e-5 * solid.volume());

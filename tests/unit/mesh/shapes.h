@@ -1,7 +1,9 @@
 // Meshes made for tests.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/pi.h"
@@ -124,6 +126,13 @@ inline Mesh soup(int count, double size, std::uint64_t seed) {
     mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
   return mesh;
+}
+
+inline double leastDistance(const Points& points) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) least = std::min(least, norm(points[i] - points[j]));
+  return least;
 }
 
 }  // namespace innermap::shapes

@@ -54,7 +54,7 @@ Vec3 positionAt(const Mesh& mesh, const SurfacePoint& s) {
 TEST(TriangleTree, ClosestAgreesWithAllTriangles) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     for (const double size : {0.001, 0.1, 2.0}) {
-      SCOPED_TRACE(testing::Message() << "seed " << seed << " size " << size);
+      SCOPED_TRACE(::testing::Message() << "seed " << seed << " size " << size);
       const Mesh mesh = shapes::soup(400, size, seed);
       const TriangleTree tree(mesh.vertices, mesh.triangles);
       const CounterRandom random(seed, 5);
@@ -80,7 +80,7 @@ TEST(TriangleTree, ClosestAgreesWithAllTriangles) {
 // Places in a ball: the part about its centre, and of that the part about a smaller ball's.
 TEST(TriangleTree, PartsHoldWhatIsClosestInABall) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
     const Mesh mesh = shapes::soup(400, seed == 2 ? 2.0 : 0.1, seed);
     const TriangleTree tree(mesh.vertices, mesh.triangles);
     const CounterRandom random(seed, 6);

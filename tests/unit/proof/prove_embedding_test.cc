@@ -13,16 +13,17 @@ using testing::affineOf;
 using testing::kIdentity;
 using testing::mapOf;
 
-HarmonicMap gentle(std::uint64_t seed) {
+HarmonicMap gentleEmbedding(std::uint64_t seed) {
   return mapOf(affineOf(kIdentity), testing::chargesAbout(200, 1.9, 0.004, seed));
 }
 
 TEST(ProveEmbedding, SmoothMapsAreProven) {
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
-    EXPECT_TRUE(proveEmbedding(gentle(seed), shapes::icosphere(3)).proven);
-    EXPECT_TRUE(proveEmbedding(gentle(seed), shapes::torus(30, 15)).proven);
-    EXPECT_TRUE(
-        proveEmbedding(ComposedMap({gentle(seed), gentle(seed + 5)}), shapes::icosphere(2)).proven);
+    EXPECT_TRUE(proveEmbedding(gentleEmbedding(seed), shapes::icosphere(3)).proven);
+    EXPECT_TRUE(proveEmbedding(gentleEmbedding(seed), shapes::torus(30, 15)).proven);
+    EXPECT_TRUE(proveEmbedding(ComposedMap({gentleEmbedding(seed), gentleEmbedding(seed + 5)}),
+                               shapes::icosphere(2))
+                    .proven);
   }
   EXPECT_TRUE(proveEmbedding(mapOf(affineOf(kIdentity), {}), shapes::icosphere(2)).proven);
 }
@@ -66,13 +67,13 @@ TEST(ProveEmbedding, WhatTouchesAlongAnEdgeIsNotConnected) {
     ASSERT_EQ(same.size(), 2u);
     for (Triangle& t : boxes.triangles) std::replace(t.begin(), t.end(), same[1], same[0]);
   }
-  EXPECT_FALSE(proveEmbedding(gentle(1), boxes).connected);
+  EXPECT_FALSE(proveEmbedding(gentleEmbedding(1), boxes).connected);
 }
 
 TEST(ProveEmbedding, FoldedSurfacesAreNotProven) {
   const Vec3 p{1, 0, 0};
   std::vector<testing::Charge> charges = testing::chargesAbout(200, 1.9, 0.004, 1);
-  charges.push_back(testing::foldingCharge(gentle(1), {0.98, 0, 0}, {1.2, 0, 0}, 0.5));
+  charges.push_back(testing::foldingCharge(gentleEmbedding(1), {0.98, 0, 0}, {1.2, 0, 0}, 0.5));
   const HarmonicMap map = mapOf(affineOf(kIdentity), charges);
   ASSERT_LT(testing::longDeterminant(map, p), 0);
   // A surface through the fold, along the direction that is turned round.
@@ -93,18 +94,18 @@ TEST(ProveEmbedding, FoldedSurfacesAreNotProven) {
 
 TEST(ProveEmbedding, ThreadsDoNotMatter) {
   const ThreadLimit two(2);
-  const EmbeddingProof a = proveEmbedding(gentle(2), shapes::icosphere(3));
+  const EmbeddingProof a = proveEmbedding(gentleEmbedding(2), shapes::icosphere(3));
   const ThreadLimit one(1);
-  const EmbeddingProof b = proveEmbedding(gentle(2), shapes::icosphere(3));
+  const EmbeddingProof b = proveEmbedding(gentleEmbedding(2), shapes::icosphere(3));
   EXPECT_EQ(a.examined, b.examined);
   EXPECT_EQ(a.proven, b.proven);
 }
 
 TEST(ProveEmbedding, RefusesWhatItCannotTake) {
-  EXPECT_THROW(proveEmbedding(gentle(1), Mesh()), DataError);
+  EXPECT_THROW(proveEmbedding(gentleEmbedding(1), Mesh()), DataError);
   Mesh bad = shapes::icosphere(1);
   bad.vertices[3].y = std::nan("");
-  EXPECT_THROW(proveEmbedding(gentle(1), bad), DataError);
+  EXPECT_THROW(proveEmbedding(gentleEmbedding(1), bad), DataError);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using innermap::testing::mapOf;
 
 RecheckSettings settingsOf(std::uint64_t seed = 1) { return {.seed = seed}; }
 
-HarmonicMap gentle(std::uint64_t seed = 1, double strength = 0.02) {
+HarmonicMap gentleMap(std::uint64_t seed = 1, double strength = 0.02) {
   return mapOf(affineOf(kIdentity), innermap::testing::chargesAbout(200, 1.5, strength, seed));
 }
 
@@ -24,7 +24,7 @@ HarmonicMap folded() {
   std::vector<innermap::testing::Charge> charges =
       innermap::testing::chargesAbout(200, 1.5, 0.004, 1);
   charges.push_back(
-      innermap::testing::foldingCharge(gentle(1, 0.004), {0.7, 0.1, 0}, {1.2, 0.2, 0}, 0.5));
+      innermap::testing::foldingCharge(gentleMap(1, 0.004), {0.7, 0.1, 0}, {1.2, 0.2, 0}, 0.5));
   return mapOf(affineOf(kIdentity), charges);
 }
 
@@ -36,7 +36,7 @@ TEST(Recheck, AgreesWithProofs) {
   const Mesh ball = shapes::icosphere(3);
   for (std::uint64_t seed = 1; seed < 3; ++seed)
     for (const ComposedMap& map :
-         {ComposedMap(gentle(seed)), ComposedMap({gentle(seed), gentle(seed + 9, 0.002)}),
+         {ComposedMap(gentleMap(seed)), ComposedMap({gentleMap(seed), gentleMap(seed + 9, 0.002)}),
           ComposedMap(folded())}) {
       const SenseProof proof = proofOf(map, ball);
       const Recheck cells = recheckSense(map, ball, proof, settingsOf(seed));
@@ -62,7 +62,7 @@ TEST(Recheck, SeesCellsThatAreNotAsProven) {
 
 TEST(Recheck, SeesADeterminantBelowItsBound) {
   const Mesh ball = shapes::icosphere(3);
-  const HarmonicMap map = gentle();
+  const HarmonicMap map = gentleMap();
   SenseProof proof = proofOf(map, ball);
   proof.least = 100;
   ASSERT_TRUE(recheckSense(map, ball, proof, settingsOf()).disagreement);
@@ -70,7 +70,7 @@ TEST(Recheck, SeesADeterminantBelowItsBound) {
 
 TEST(Recheck, SeesCellsThatAreMissing) {
   const Mesh ball = shapes::icosphere(3);
-  const HarmonicMap map = gentle();
+  const HarmonicMap map = gentleMap();
   SenseProof proof = proofOf(map, ball);
   std::vector<ProofCell>& places = proof.proven.places;
   places.erase(places.begin());
@@ -79,7 +79,7 @@ TEST(Recheck, SeesCellsThatAreMissing) {
 
 TEST(Recheck, DoesNotDependOnThreads) {
   const Mesh ball = shapes::icosphere(2);
-  const HarmonicMap map = gentle();
+  const HarmonicMap map = gentleMap();
   const SenseProof proof = proofOf(map, ball);
   const Recheck all = recheckSense(map, ball, proof, settingsOf());
   const ThreadLimit one(1);
@@ -91,7 +91,7 @@ TEST(Recheck, DoesNotDependOnThreads) {
 // A target whose error is known: it is moved from the map's own images.
 struct Target {
   Mesh ball = shapes::icosphere(3);
-  ComposedMap map{gentle(1, 0.004)};
+  ComposedMap map{gentleMap(1, 0.004)};
   Points to;
 
   Target() {

@@ -13,20 +13,13 @@ SourceSettings sources(std::size_t count, std::uint64_t seed = 1) {
   return {.count = count, .seed = seed};
 }
 
-double leastDistance(const Points& points) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) least = std::min(least, norm(points[i] - points[j]));
-  return least;
-}
-
 TEST(SourceShellRelease, StandsAtTheDistanceOutside) {
   const Mesh overlapping =
       shapes::joined(shapes::torus(60, 30), shapes::icosphere(3, 0.5, {1, 0.1, 0.2}));
   for (const Mesh& mesh : {shapes::torus(60, 30), shapes::box({0, 0, 0}, {1, 2, 3}), overlapping}) {
     const Solid solid(mesh);
     for (const double d : {2e-4, 0.02, 0.4}) {
-      SCOPED_TRACE(testing::Message() << mesh.name << " at " << d);
+      SCOPED_TRACE(::testing::Message() << mesh.name << " at " << d);
       const Points points = sourceShell(solid, d, sources(700));
       ASSERT_EQ(points.size(), 700u);
       for (const Vec3& p : points) {
@@ -45,7 +38,7 @@ TEST(SourceShell, IsBlueNoise) {
   const Points points = sourceShell(solid, 0.05, sources(n));
   const double r = 1 + 0.05 * solid.diagonal();
   const double largest = 2 * std::sqrt(4 * kPi * r * r / (2 * std::sqrt(3.0) * n));
-  EXPECT_GT(leastDistance(points), 0.58 * largest);
+  EXPECT_GT(shapes::leastDistance(points), 0.58 * largest);
 }
 
 TEST(SourceShell, SameForAnyNumberOfThreadsAndForScaleAndPlace) {
@@ -96,7 +89,7 @@ TEST(SourceSphere, IsBlueNoiseOnTheSphere) {
       EXPECT_FALSE(solid.inside(p));
     }
     const double largest = 2 * std::sqrt(4 * kPi * r * r / (2 * std::sqrt(3.0) * n));
-    EXPECT_GT(leastDistance(points), 0.6 * largest);
+    EXPECT_GT(shapes::leastDistance(points), 0.6 * largest);
   }
   for (const double ratio : {1.0, 0.0, -2.0, 101.0, std::nan("")})
     EXPECT_THROW(sourceSphere(solid, ratio, sources(10)), SettingError);

@@ -19,13 +19,6 @@ Points positions(const Mesh& mesh, const std::vector<SurfacePoint>& samples) {
   return points;
 }
 
-double leastDistance(const Points& points) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) least = std::min(least, norm(points[i] - points[j]));
-  return least;
-}
-
 bool operator==(const SurfacePoint& x, const SurfacePoint& y) {
   return x.triangle == y.triangle && x.barycentric == y.barycentric;
 }
@@ -84,8 +77,8 @@ TEST(BlueNoise, SamplesKeepTheirDistance) {
     const double largest = 2 * std::sqrt(surfaceArea(mesh) / (2 * std::sqrt(3.0) * n));
     const Points points = positions(mesh, samples);
     // Yuksel reports 0.7 and more of the hexagonal packing's distance; random ones come to 0.02.
-    EXPECT_GT(leastDistance(points), 0.6 * largest);
-    EXPECT_LT(leastDistance(points), largest);
+    EXPECT_GT(shapes::leastDistance(points), 0.6 * largest);
+    EXPECT_LT(shapes::leastDistance(points), largest);
     // Even density: each octant has its share within a few samples.
     if (n < 3000) continue;
     std::array<int, 8> octants{};

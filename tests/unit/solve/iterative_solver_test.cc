@@ -14,7 +14,7 @@ namespace {
 
 using testing::spherePoints;
 
-struct Problem {
+struct IterativeProblem {
   double spacing = std::sqrt(4 * kPi / 1200), distance = 1.25 * spacing;
   Points collocation = spherePoints(3600, 1), fresh = spherePoints(4000, 1, 0.4);
   SourceLevel coarse{spherePoints(150, 1.4, 2), std::sqrt(4 * kPi / 150), 0.4},
@@ -50,7 +50,7 @@ double rmsError(const Solution& s, const Points& sources, const Points& points) 
 }
 
 TEST(IterativeSolver, IsAsGoodAsTheDenseSolver) {
-  const Problem p;
+  const IterativeProblem p;
   const IterativeSolver solver = p.solver();
   const IterativeSolution fast = solver.solve(roughValues(p.collocation));
   const DenseSolution dense =
@@ -62,7 +62,7 @@ TEST(IterativeSolver, IsAsGoodAsTheDenseSolver) {
 }
 
 TEST(IterativeSolver, ResidualsAreTrueAndFall) {
-  const Problem p;
+  const IterativeProblem p;
   const IterativeSolver solver = p.solver();
   const IterativeSolution s = solver.solve(roughValues(p.collocation));
   ASSERT_EQ(s.residuals.size(), static_cast<std::size_t>(s.iterations) + 1);
@@ -73,7 +73,7 @@ TEST(IterativeSolver, ResidualsAreTrueAndFall) {
 
 // Three channels that look alike on a ball.
 TEST(IterativeSolver, AffineDataAreExact) {
-  const Problem p;
+  const IterativeProblem p;
   Matrix b(p.collocation.size(), 3);
   for (std::size_t i = 0; i < b.rows(); ++i) {
     const Vec3& at = p.collocation[i];
@@ -87,7 +87,7 @@ TEST(IterativeSolver, AffineDataAreExact) {
 }
 
 TEST(IterativeSolver, SameBitsForAnyNumberOfThreads) {
-  const Problem p;
+  const IterativeProblem p;
   const auto weights = [&] { return p.solver().solve(roughValues(p.collocation)).weights; };
   const Matrix all = weights();
   const ThreadLimit one(1);
@@ -96,7 +96,7 @@ TEST(IterativeSolver, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(IterativeSolver, ScaleAndPlaceDoNotMatter) {
-  const Problem p;
+  const IterativeProblem p;
   const auto moved = [](Points q) {
     for (Vec3& v : q) v = 1e-3 * v + Vec3{4, 5, 6};
     return q;
@@ -146,7 +146,7 @@ TEST(IterativeSolver, ReachesTheDenseResidualOnSmallProblems) {
 
 // The fine level in two parts, one of them added later: another preconditioner, the same problem.
 TEST(IterativeSolver, GrowsAndStartsWarm) {
-  const Problem p;
+  const IterativeProblem p;
   const Matrix values = roughValues(p.collocation);
   SourceLevel left{{}, p.spacing, p.distance}, right = left;
   for (const Vec3& q : p.fine.sources) (q.x < 0 ? left : right).sources.push_back(q);
@@ -174,7 +174,7 @@ TEST(IterativeSolver, GrowsAndStartsWarm) {
 
 // A handful about one place: there the residual falls, and the other charges stay as they are.
 TEST(IterativeSolver, FewAddedChargesAreSolvedForAlone) {
-  const Problem p;
+  const IterativeProblem p;
   IterativeSolver solver = p.solver();
   const Vec3 place{1, 0, 0};
   const IterativeSolution before = solver.solve(roughValues(p.collocation));
@@ -203,7 +203,7 @@ TEST(IterativeSolver, FewAddedChargesAreSolvedForAlone) {
 }
 
 TEST(IterativeSolver, OneLevelIsEnough) {
-  const Problem p;
+  const IterativeProblem p;
   const IterativeSolver solver(p.collocation, {p.coarse});
   const IterativeSolution s = solver.solve(roughValues(p.collocation));
   const DenseSolution dense =
@@ -215,7 +215,7 @@ TEST(IterativeSolver, OneLevelIsEnough) {
 }
 
 TEST(IterativeSolver, RefusesWhatCannotBe) {
-  Problem p;
+  IterativeProblem p;
   test::expectOverLimit(10000, [&] { p.solver({}); });
   EXPECT_THROW(IterativeSolver(p.collocation, {}), SettingError);
   EXPECT_THROW(IterativeSolver(p.collocation, {p.coarse, {{}, 1, 1}}), SettingError);

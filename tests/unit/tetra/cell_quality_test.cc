@@ -11,7 +11,7 @@ namespace {
 
 constexpr Hexahedron kUnit{0, 1, 2, 3, 4, 5, 6, 7};
 
-Points cube() {
+Points unitCube() {
   return {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 }
 
@@ -31,19 +31,19 @@ TEST(CellQuality, DihedralAnglesOfKnownCells) {
 }
 
 TEST(CellQuality, ScaledJacobianOfKnownCells) {
-  Points p = cube();
+  Points p = unitCube();
   EXPECT_NEAR(scaledJacobian(p, kUnit), 1, 1e-12);
   for (Vec3& v : p) v.x *= 7;  // a box is as good
   EXPECT_NEAR(scaledJacobian(p, kUnit), 1, 1e-12);
   for (Vec3& v : p) v.x += v.y;  // sheared by 45 degrees
   EXPECT_NEAR(scaledJacobian(p, kUnit), std::sqrt(0.5), 1e-12);
-  p = cube();
+  p = unitCube();
   p[6] = {0.2, 0.2, 0.2};  // dented beyond the plane of its neighbours
   EXPECT_LT(scaledJacobian(p, kUnit), 0);
 }
 
 TEST(CellQuality, CountsAndFields) {
-  CellMesh mesh{.vertices = cube()};
+  CellMesh mesh{.vertices = unitCube()};
   mesh.tetrahedra = {{0, 1, 3, 4}, {0, 3, 1, 4}};  // the second is inverted
   mesh.hexahedra = {kUnit};
   const CellQuality q = cellQuality(mesh);
@@ -70,7 +70,7 @@ TEST(CellQuality, EmptyAndCancelled) {
   CellMesh mesh;
   setQualityFields(mesh, cellQuality(mesh));
   EXPECT_TRUE(mesh.cellFields.empty());
-  mesh.vertices = cube();
+  mesh.vertices = unitCube();
   mesh.hexahedra = {kUnit};
   test::expectCancels([&] { cellQuality(mesh); });
 }

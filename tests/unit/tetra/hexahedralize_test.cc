@@ -7,7 +7,7 @@
 namespace innermap {
 namespace {
 
-double volumeOf(const CellMesh& mesh) {
+double enclosedVolume(const CellMesh& mesh) {
   return signedVolume(mesh.vertices, boundaryTriangles(mesh));
 }
 
@@ -27,7 +27,7 @@ TEST(HexahedralizeNightly, ReachesAcrossThinPartsAndCavities) {
     shell.triangles.push_back({first + t[0], first + t[2], first + t[1]});
   const Hexahedralization hexes = hexahedralize(shell, across(10, 1));
   EXPECT_TRUE(hexes.after.proven());
-  EXPECT_NEAR(volumeOf(hexes.mesh), signedVolume(shell), 0.05 * signedVolume(shell));
+  EXPECT_NEAR(enclosedVolume(hexes.mesh), signedVolume(shell), 0.05 * signedVolume(shell));
 }
 
 }  // namespace

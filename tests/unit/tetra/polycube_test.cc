@@ -7,7 +7,7 @@
 namespace innermap {
 namespace {
 
-PolycubeSettings across(int blocks) { return {.blocks = blocks}; }
+PolycubeSettings blocksAcross(int blocks) { return {.blocks = blocks}; }
 
 void append(Mesh& mesh, const Mesh& other, bool turned) {
   const int first = static_cast<int>(mesh.vertices.size());
@@ -19,7 +19,7 @@ void append(Mesh& mesh, const Mesh& other, bool turned) {
 }
 
 TEST(Polycube, BallIsNearAndSymmetric) {
-  const Polycube cube = makePolycube(shapes::icosphere(4), across(10));
+  const Polycube cube = makePolycube(shapes::icosphere(4), blocksAcross(10));
   EXPECT_EQ(cube.across, 10);
   EXPECT_EQ(cube.handles, 0);
   EXPECT_LT(cube.missed, 0.08);
@@ -32,7 +32,7 @@ TEST(Polycube, BallIsNearAndSymmetric) {
 
 TEST(Polycube, KeepsHandles) {
   for (const int blocks : {8, 11, 16}) {
-    const Polycube cube = makePolycube(shapes::torus(60, 24), across(blocks));
+    const Polycube cube = makePolycube(shapes::torus(60, 24), blocksAcross(blocks));
     EXPECT_EQ(cube.handles, 1);
     EXPECT_EQ(topologyOf(cube.blocks).handles, std::vector<int>{1});
     EXPECT_TRUE(isManifold(cube.blocks));
@@ -42,7 +42,7 @@ TEST(Polycube, KeepsHandles) {
 TEST(Polycube, KeepsCavities) {
   Mesh shell = shapes::icosphere(4);
   append(shell, shapes::icosphere(3, 0.5), true);
-  const Polycube cube = makePolycube(shell, across(12));
+  const Polycube cube = makePolycube(shell, blocksAcross(12));
   EXPECT_EQ(cube.cavities, 1);
   EXPECT_EQ(topologyOf(cube.blocks).handles, (std::vector<int>{0, 0}));
 }
@@ -60,7 +60,7 @@ TEST(Polycube, TellsWhatIsMissed) {
   Mesh mesh = shapes::icosphere(4);
   for (Vec3& v : mesh.vertices)
     if (v.x > 0.98) v.x += 2 * (v.x - 0.98) / 0.02;
-  const Polycube cube = makePolycube(mesh, across(9));
+  const Polycube cube = makePolycube(mesh, blocksAcross(9));
   ASSERT_FALSE(cube.missedParts.empty());
   EXPECT_GT(cube.missedParts[0].centre.x, 1.2);
   EXPECT_GT(cube.missed, cube.missedParts[0].volume);

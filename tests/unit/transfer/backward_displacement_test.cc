@@ -9,10 +9,10 @@ namespace {
 using namespace test;
 
 const Mat3 kStretch{{{1.5, 0.2, 0}, {0, 0.8, 0.1}, {0, 0, 1.2}}};
-const Vec3 kShift{3, -1, 0.5};
+const Vec3 kStep{3, -1, 0.5};
 
 TEST(BackwardDisplacement, LeadsFromEachVoxelToItsPlaceInTheSource) {
-  const HarmonicMap map = affineMap(kStretch, kShift);
+  const HarmonicMap map = affineMap(kStretch, kStep);
   const Solid source(ball()), target(moved(ball(), map));
   const auto levelSet = levelSetOf(target, 24);
   const BackwardDisplacement back = backwardDisplacement(ComposedMap(map), source, *levelSet);
@@ -28,7 +28,7 @@ TEST(BackwardDisplacement, LeadsFromEachVoxelToItsPlaceInTheSource) {
     if (!(distance.getValue(value.getCoord()) < 0)) continue;
     ++inside;
     const Vec3 at = toVec3(back.grid->indexToWorld(value.getCoord()));
-    const Vec3 there = home * (at - kShift);
+    const Vec3 there = home * (at - kStep);
     const openvdb::Vec3s v = *value;
     error = std::max(error, norm(at + Vec3{v.x(), v.y(), v.z()} - there));
   }

@@ -97,7 +97,7 @@ Mat3 polarByNewton(Mat3 r) {
 TEST(Splats, CovariancesAreCarried) {
   Draws draw(kSeed);
   for (int i = 0; i < 400; ++i) {
-    SCOPED_TRACE(testing::Message() << "splat " << i << " of seed " << kSeed);
+    SCOPED_TRACE(::testing::Message() << "splat " << i << " of seed " << kSeed);
     const bool mirrored = i % 3 == 0;
     // Every other one as flat as captures of walls are.
     const Splat s = randomSplat(draw, i % 2 ? 2 : -12);

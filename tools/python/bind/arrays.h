@@ -5,6 +5,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "innermap/mesh/mesh.h"
 
 namespace innermap::python {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // where a row has no value
 
 // `name` is the argument, as messages call it. Anything that numpy takes for an array of real
 // numbers; throw TypeError for other kinds, innermap.DataError for shapes and values.

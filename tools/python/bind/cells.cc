@@ -225,7 +225,7 @@ Mesh surfaceOf(const PyCells& cells) {
   return mesh;
 }
 
-py::object write(const Arguments& a, NoOptions&) {
+py::object writeCells(const Arguments& a, NoOptions&) {
   const auto& cells = py::cast<const PyCells&>(a[0]);
   const std::string path = pathFrom(a[1], "path");
   std::vector<std::string> left;
@@ -313,7 +313,7 @@ void bindCells(py::module_& m) {
                     {"write", "self, path",
                      "Writes a .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file, whole or not at all. "
                      "Returns the names of fields that the format cannot hold. Raises FileError."},
-                    write);
+                    writeCells);
   define<CallOptions>(m,
                       {"read_cells", "path",
                        "Reads tetrahedra and hexahedra of a .vtu, .msh or .mesh file: an "

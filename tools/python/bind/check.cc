@@ -44,7 +44,7 @@ py::list findingsOf(const MeshReport& report) {
   return out;
 }
 
-std::string reprOf(const MeshReport& report) {
+std::string checkText(const MeshReport& report) {
   std::string out = fmt::format("<innermap.MeshReport: {} vertices, {} triangles", report.vertices,
                                 report.triangles);
   for (const Finding& finding : findings(report)) out += "; " + finding.what;
@@ -85,7 +85,7 @@ void bindCheck(py::module_& m) {
       .def_property_readonly("findings", &findingsOf,
                              "What is worth telling, most serious first: dicts of name, count, "
                              "what, meaning; empty for a clean closed mesh.")
-      .def("__repr__", &reprOf);
+      .def("__repr__", &checkText);
   define<CheckOptions>(m,
                        {"check", "*mesh",
                         "Check a mesh: each fault, and its meaning for a map. Returns a "

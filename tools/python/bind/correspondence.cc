@@ -89,7 +89,7 @@ py::object correspondTwo(const Arguments& a, CorrespondCall& o) {
 }
 
 // As the program does: where triangles were split, the source stands beside.
-py::object save(const Arguments& a, NoOptions&) {
+py::object saveCorrespondence(const Arguments& a, NoOptions&) {
   const auto& self = py::cast<const PyCorrespondence&>(a[0]);
   const std::string path = pathFrom(a[1], "path");
   if (path.size() < 5 || path.compare(path.size() - 4, 4, ".ply") != 0)
@@ -135,7 +135,7 @@ py::object loadCorrespondence(const Arguments& a, CallOptions& o) {
   return py::cast(out);
 }
 
-std::string reprOf(const PyCorrespondence& c) {
+std::string correspondenceText(const PyCorrespondence& c) {
   return fmt::format("<innermap.Correspondence: {} vertices of '{}'>", c.positions.size(),
                      c.source.name);
 }
@@ -206,13 +206,13 @@ void bindCorrespondence(py::module_& m) {
                     "(shares of its diagonal), landmark_error; empty where it was read.")
       .def_readonly("notes", &PyCorrespondence::notes, "What was done, a line each.")
       .def_readonly("warnings", &PyCorrespondence::warnings, "What makes it doubtful, a line each.")
-      .def("__repr__", &reprOf);
+      .def("__repr__", &correspondenceText);
   define<NoOptions>(c,
                     {"save", "self, path",
                      "Writes the places to a .ply file, which load_correspondence() and the "
                      "program read; where triangles were split, also the source, to "
                      "NAME.source.ply. Raises FileError."},
-                    save);
+                    saveCorrespondence);
   define<CorrespondCall>(
       m,
       {"correspond", "*meshes",

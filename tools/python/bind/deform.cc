@@ -22,8 +22,6 @@ namespace py = pybind11;
 namespace innermap::python {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 struct DeformOptions : CarryOptions {
   FittingOptions fitting;
   bool velocity = false;

@@ -22,8 +22,6 @@ namespace py = pybind11;
 namespace innermap::python {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 struct DeformerOptions {
   FrameFitterSettings fitting;
   double outside = 0;
@@ -92,7 +90,7 @@ Mesh frameFrom(const PyDeformer& self, const py::object& given) {
   return out;
 }
 
-py::object carry(const Arguments& a, CallOptions& o) {
+py::object carryFrame(const Arguments& a, CallOptions& o) {
   const auto self = py::cast<std::shared_ptr<PyDeformer>>(a[0]);
   const Mesh frame = frameFrom(*self, a[1]);
   return arrayOf(call(o, [&] {
@@ -178,7 +176,7 @@ void bindDeformer(py::module_& m) {
        "Where the points are in a pose, (n, 3), as deform() has them; NaN where found is "
        "False.\n\nframe: places of the rest pose's vertices, (vertices, 3), or a mesh of its "
        "connectivity. Raises DataError."},
-      carry);
+      carryFrame);
   define<CallOptions>(
       deformer,
       {"measure", "self, frame",

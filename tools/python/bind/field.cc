@@ -87,7 +87,7 @@ HarmonicGrids gridsOf(const PyField& field, const FieldGridOptions& o) {
   return grids;
 }
 
-py::object evaluate(const Arguments& a, FieldGridOptions& o) {
+py::object evaluateField(const Arguments& a, FieldGridOptions& o) {
   const HarmonicGrids grids = gridsOf(py::cast<const PyField&>(a[0]), o);
   py::dict totals;
   totals["interior_voxels"] = grids.interiorVoxels;
@@ -110,13 +110,13 @@ py::object writeFieldVdb(const Arguments& a, WriteFieldOptions& o) {
   return writeGrids(path, grids.all(), o.names, o.call);
 }
 
-py::object save(const Arguments& a, NoOptions&) {
+py::object saveField(const Arguments& a, NoOptions&) {
   const auto solid = py::cast<const PyField&>(a[0]).solid;
   const std::string path = pathFrom(a[1], "path");
   return withoutLock([&] { writeSolidField(path, *solid); });
 }
 
-std::string reprOf(const PyField& field) {
+std::string fieldText(const PyField& field) {
   return fmt::format("<innermap.Field of {} in '{}': {} charges>",
                      fmt::join(field.solid->names, ", "), field.solid->boundary.mesh.name,
                      field.solid->field.sources().size());
@@ -166,7 +166,7 @@ void bindProperties(py::class_<PyField, std::shared_ptr<PyField>>& field) {
       .def_property_readonly(
           "source", [](const PyField& self) { return self.solid->boundary.mesh; },
           "The mesh of the solid, a Mesh.")
-      .def("__repr__", &reprOf);
+      .def("__repr__", &fieldText);
 }
 
 }  // namespace
@@ -202,7 +202,7 @@ void bindField(py::module_& m) {
        "The field on the voxels of its solid: an innermap.Grids with surface (level set), density "
        "(fog of the inside) and of each channel NAME, NAME_gradient, NAME_direction, "
        "NAME_magnitude. Raises MemoryError before the work."},
-      evaluate);
+      evaluateField);
   define<WriteFieldOptions>(field,
                             {"write_vdb", "self, path",
                              "Evaluates the field as evaluate() does and writes an OpenVDB file. "
@@ -212,7 +212,7 @@ void bindField(py::module_& m) {
                     {"save", "self, path",
                      "Writes the field's file (.ply), which load() reads. It appears whole or not "
                      "at all. Raises FileError."},
-                    save);
+                    saveField);
   defineContains(field, [](const py::object& self) {
     return py::cast<const PyField&>(self).solid->boundary.solid;
   });

@@ -16,11 +16,7 @@
 namespace py = pybind11;
 
 namespace innermap::python {
-namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 void FittingOptions::describe(Keywords& k) {
   k.object("only", &only, "str", "which of the frames, by number: '12', '1-48', '1-48x2'; all");

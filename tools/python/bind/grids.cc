@@ -134,7 +134,7 @@ py::list namesOf(const PyGrids& grids) {
   return out;
 }
 
-std::string reprOf(const PyGrids& grids) {
+std::string gridsText(const PyGrids& grids) {
   const openvdb::Coord size = grids.box.dim();
   return fmt::format("<innermap.Grids of {} x {} x {} voxels: {}>", size.x(), size.y(), size.z(),
                      py::cast<std::string>(py::str(", ").attr("join")(namesOf(grids))));
@@ -150,7 +150,7 @@ struct WriteOptions {
   }
 };
 
-py::object write(const Arguments& a, WriteOptions& o) {
+py::object writeFile(const Arguments& a, WriteOptions& o) {
   const openvdb::GridPtrVec grids = py::cast<const PyGrids&>(a[0]).grids;
   const std::string path = pathFrom(a[1], "path");
   return writeGrids(path, grids, o.names, o.call);
@@ -257,12 +257,12 @@ void bindGrids(py::module_& m) {
           },
           "(nx, ny, nz) of the arrays.")
       .def_readonly("totals", &PyGrids::totals, "Numbers about the grids, by name.")
-      .def("__repr__", &reprOf);
+      .def("__repr__", &gridsText);
   define<WriteOptions>(grids,
                        {"write_vdb", "self, path",
                         "Writes the grids to an OpenVDB file, with their metadata. It appears "
                         "whole or not at all. Raises FileError."},
-                       write);
+                       writeFile);
 }
 
 }  // namespace innermap::python

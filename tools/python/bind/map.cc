@@ -66,7 +66,7 @@ py::object inverseMap(const Arguments& a, InverseOptions& o) {
                       o.jacobian);
 }
 
-py::object save(const Arguments& a, NoOptions&) {
+py::object saveMap(const Arguments& a, NoOptions&) {
   const auto mapped = py::cast<const PyMap&>(a[0]).mapped;
   const std::string path = pathFrom(a[1], "path");
   return withoutLock([&] { writeMap(path, *mapped); });
@@ -128,7 +128,7 @@ py::object verify(const Arguments& a, VerifyOptions& o) {
   return dictOf(figures(call(o.call, [&]() { return verifyMap(*mapped, o.settings); })));
 }
 
-std::string reprOf(const PyMap& map) {
+std::string mapText(const PyMap& map) {
   const MappedSolid& mapped = *map.mapped;
   return fmt::format(
       "<innermap.Map of '{}' onto '{}': {} charges{}>", mapped.boundary.source.mesh.name,
@@ -201,7 +201,7 @@ void bindMap(py::module_& m) {
                     {"save", "self, path",
                      "Writes the map's file (.ply), which load() and the program read. It appears "
                      "whole or not at all. Raises FileError."},
-                    save);
+                    saveMap);
   define<ProveOptions>(
       map,
       {"prove", "self",
@@ -268,7 +268,7 @@ void bindMap(py::module_& m) {
                                   self.mapped->boundary.target.volume);
           },
           "Of source and target, world units cubed.")
-      .def("__repr__", &reprOf);
+      .def("__repr__", &mapText);
 }
 
 }  // namespace innermap::python

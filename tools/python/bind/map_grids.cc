@@ -49,7 +49,7 @@ SolidGrids gridsOf(const PyMap& map, const MapGridOptions& o) {
   });
 }
 
-py::object evaluate(const Arguments& a, MapGridOptions& o) {
+py::object evaluateMap(const Arguments& a, MapGridOptions& o) {
   const SolidGrids grids = gridsOf(py::cast<const PyMap&>(a[0]), o);
   py::dict totals("harmonic_energy"_a = grids.values.harmonicTotal,
                   "deformation_energy"_a = grids.values.deformationTotal,
@@ -106,7 +106,7 @@ void bindMapGrids(py::module_& m) {
        "change of volume), harmonic_energy, deformation_energy, and where there are such, folded, "
        "outside, repaired and map_local. totals of it has the energies' integrals, the least "
        "Jacobian, the folded share. Raises MemoryError before the work."},
-      evaluate);
+      evaluateMap);
   define<WriteMapOptions>(map,
                           {"write_vdb", "self, path",
                            "Evaluates the map as evaluate() does and writes an OpenVDB file, the "

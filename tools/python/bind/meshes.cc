@@ -40,7 +40,7 @@ py::object trianglesOfCells(const py::object& mesh, const std::string& name) {
   return py::module_::import("numpy").attr("concatenate")(arrays);
 }
 
-py::str reprOf(const Mesh& mesh) {
+py::str meshText(const Mesh& mesh) {
   return py::str(fmt::format("<innermap.Mesh '{}': {} vertices, {} triangles>", mesh.name,
                              mesh.vertices.size(), mesh.triangles.size()));
 }
@@ -61,7 +61,7 @@ void bindMeshClass(py::module_& m) {
            [](const Mesh& mesh) {
              return py::iter(py::make_tuple(arrayOf(mesh.vertices), arrayOf(mesh.triangles)));
            })
-      .def("__repr__", &reprOf);
+      .def("__repr__", &meshText);
 }
 
 }  // namespace

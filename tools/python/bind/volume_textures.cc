@@ -22,7 +22,7 @@ std::pair<int, int> tilesFrom(const py::object& object) {
   return {static_cast<int>(columns), static_cast<int>(rows)};
 }
 
-struct WriteOptions {
+struct TextureWriteOptions {
   VolumeTextureSettings texture;
   py::object names, tiles;
   CallOptions call;
@@ -37,7 +37,7 @@ struct WriteOptions {
   }
 };
 
-py::object write(const Arguments& a, WriteOptions& o) {
+py::object writeVolumeTexture(const Arguments& a, TextureWriteOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   const openvdb::GridPtrVec grids = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
   if (!o.tiles.is_none()) o.texture.tiles = tilesFrom(o.tiles);
@@ -52,7 +52,7 @@ py::object write(const Arguments& a, WriteOptions& o) {
                   "clamped"_a = made.clamped, "rounded"_a = made.inexact);
 }
 
-struct ReadOptions {
+struct TextureReadOptions {
   VolumeTextureReadSettings texture;
   py::object names, tiles, lowerCorner;
   CallOptions call;
@@ -71,7 +71,7 @@ struct ReadOptions {
   }
 };
 
-py::object read(const Arguments& a, ReadOptions& o) {
+py::object read(const Arguments& a, TextureReadOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   VolumeTextureReadSettings& s = o.texture;
   s.names = textsFrom(o.names, "names");
@@ -94,7 +94,7 @@ py::object read(const Arguments& a, ReadOptions& o) {
 }  // namespace
 
 void bindVolumeTextures(py::module_& m) {
-  define<WriteOptions>(
+  define<TextureWriteOptions>(
       m,
       {"write_volume_texture", "path, grids",
        "Writes grids for other programs, in the format of the path's ending: a volume texture for "
@@ -102,8 +102,8 @@ void bindVolumeTextures(py::module_& m) {
        "read_volume_texture() and `innermap import` read; or .nvdb, .vti, .dds, .nii. grids: an "
        "innermap.Grids or the path of a .vdb file. Returns files, channels, tiles and sizes. "
        "Raises FileError, DataError, MemoryError."},
-      write);
-  define<ReadOptions>(
+      writeVolumeTexture);
+  define<TextureReadOptions>(
       m,
       {"read_volume_texture", "path",
        "Reads a volume texture, or a scan in .nii or .nii.gz: an innermap.Grids. Of slices, path "

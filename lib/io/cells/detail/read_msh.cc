@@ -19,7 +19,7 @@ struct MshCell {
   const char* name;
 };
 
-constexpr MshCell kCells[] = {
+constexpr MshCell kMshCells[] = {
     {1, 2, CellUse::leftOut, "lines"},          {2, 3, CellUse::leftOut, "triangles"},
     {3, 4, CellUse::leftOut, "quadrilaterals"}, {4, 4, CellUse::tetrahedron, "tetrahedra"},
     {5, 8, CellUse::hexahedron, "hexahedra"},   {6, 6, CellUse::refused, "prisms"},
@@ -185,7 +185,7 @@ class MshReader {
   }
 
   const MshCell& cellOf(std::int64_t type) const {
-    for (const MshCell& cell : kCells) {
+    for (const MshCell& cell : kMshCells) {
       if (cell.type != type) continue;
       if (cell.use == CellUse::refused)
         in_.fail(

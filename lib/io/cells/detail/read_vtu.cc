@@ -20,7 +20,7 @@ struct VtkCell {
   const char* name;
 };
 
-constexpr VtkCell kCells[] = {
+constexpr VtkCell kVtkCells[] = {
     {0, 0, CellUse::leftOut, "empty cells"},      {1, 1, CellUse::leftOut, "points"},
     {2, -1, CellUse::leftOut, "sets of points"},  {3, 2, CellUse::leftOut, "lines"},
     {4, -1, CellUse::leftOut, "curves"},          {5, 3, CellUse::leftOut, "triangles"},
@@ -169,7 +169,7 @@ class VtuReader {
   }
 
   CellUse useOf(std::int64_t type, std::int64_t corners, std::uint64_t cell) {
-    for (const VtkCell& known : kCells) {
+    for (const VtkCell& known : kVtkCells) {
       if (type != known.type) continue;
       if (known.use == CellUse::refused)
         fail(

@@ -5,7 +5,7 @@
 namespace innermap {
 namespace {
 
-bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+bool isXmlSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 std::string resolved(std::string_view text) {
   static constexpr std::pair<std::string_view, char> kEntities[] = {
@@ -34,12 +34,12 @@ std::string XmlTag::attribute(std::string_view wanted) const {
 }
 
 void XmlTags::skipSpace() {
-  while (position_ < file_.bytes.size() && isSpace(file_.bytes[position_])) ++position_;
+  while (position_ < file_.bytes.size() && isXmlSpace(file_.bytes[position_])) ++position_;
 }
 
 std::string_view XmlTags::word() {
   const std::size_t begin = position_;
-  while (position_ < file_.bytes.size() && !isSpace(file_.bytes[position_]) && peek() != '=' &&
+  while (position_ < file_.bytes.size() && !isXmlSpace(file_.bytes[position_]) && peek() != '=' &&
          peek() != '>' && peek() != '/')
     ++position_;
   return std::string_view(file_.bytes).substr(begin, position_ - begin);

@@ -37,6 +37,13 @@ Vec3 linear(const Rgb& colour) {
   return out;
 }
 
+float encoded(double light) {
+  if (!(light > 0)) return 0;
+  if (light >= 1) return 1;
+  return static_cast<float>(light <= 0.0031308 ? 12.92 * light
+                                               : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
+}
+
 Picture::Picture(int width, int height, Rgb background)
     : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * height * 3) {
   fill(0, 0, width, height, background);

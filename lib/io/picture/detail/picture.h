@@ -13,9 +13,12 @@ namespace innermap {
 
 using Rgb = std::array<float, 3>;  // sRGB, 0..1
 
+constexpr Rgb kPaper{1, 1, 1}, kInk{0.13f, 0.14f, 0.16f};
+
 Rgb rampColour(double t, Colormap map = Colormap::redBlue);
 
 Vec3 linear(const Rgb& colour);  // of sRGB (IEC 61966-2-1)
+float encoded(double light);     // to sRGB; what is outside [0, 1], or no number, is clamped
 
 enum class Align { left, centre, right };
 

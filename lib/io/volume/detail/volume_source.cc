@@ -18,7 +18,7 @@
 namespace innermap {
 namespace {
 
-constexpr int kLongestSide = 65536;
+constexpr int kMostSlices = 65536;
 constexpr int kFarthest = 1 << 30;  // index coordinates
 
 VolumeLayout layoutOf(const std::string& path, const std::string& attribute) {
@@ -128,7 +128,7 @@ void VolumeSource::findFiles(const std::string& path, const VolumeAttributes& a)
 int VolumeSource::countFiles() const {
   int count = 0;
   std::error_code ignored;
-  while (count < kLongestSide &&
+  while (count < kMostSlices &&
          std::filesystem::exists(files_->path(std::int64_t(firstFile_) + count), ignored))
     ++count;
   return count;
@@ -146,9 +146,9 @@ int VolumeSource::fixCount(const VolumeAttributes& a) const {
                                 layout_ == VolumeLayout::atlas   ? "tiles"
                                 : layout_ == VolumeLayout::parts ? "parts"
                                                                  : "files numbered in a row"));
-  if (count > kLongestSide)
+  if (count > kMostSlices)
     throw FileError(reader_->path(),
-                    fmt::format("has {} slices; at most {} are read", count, kLongestSide));
+                    fmt::format("has {} slices; at most {} are read", count, kMostSlices));
   return count;
 }
 
@@ -176,10 +176,10 @@ void VolumeSource::fixTiles(const VolumeAttributes& a) {
   openvdb::Coord& size = lattice_.size;
   size[lattice_.columnAxis] = width / lattice_.tileColumns;
   size[lattice_.rowAxis] = height / lattice_.tileRows;
-  if (lattice_.width() > kLongestSide || lattice_.height() > kLongestSide)
+  if (lattice_.width() > kMostSlices || lattice_.height() > kMostSlices)
     throw FileError(path, fmt::format("its slices have {} x {} pixels; at most {} are read along "
                                       "a side",
-                                      lattice_.width(), lattice_.height(), kLongestSide));
+                                      lattice_.width(), lattice_.height(), kMostSlices));
   if (a.tileSize && *a.tileSize != openvdb::Vec2i(lattice_.width(), lattice_.height()))
     throw FileError(
         path, fmt::format("attribute 'volumeTileSize' says {} x {}, but slices have {} "

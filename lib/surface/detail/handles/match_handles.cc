@@ -15,7 +15,8 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kExhaustive = 6, kStarts = 64;
-constexpr double kLengthWeight = 0.5, kSphereWeight = 1, kLandmarkWeight = 10, kPlaceWeight = 10;
+constexpr double kMatchLengthWeight = 0.5, kSphereWeight = 1, kMatchLandmarkWeight = 10,
+                 kMatchPlaceWeight = 10;
 
 // What a match is judged by: cap 2 i + s is that of handle i on side s.
 struct Caps {
@@ -92,9 +93,9 @@ class HandleMatcher {
       landmarks +=
           squaredNorm(m.rotation * x - y) / static_cast<double>(settings_.landmarks.size());
     const double count = static_cast<double>(n);
-    m.cost = 2 * distances / (count * (count - 1)) + kLengthWeight * lengths / count +
-             kSphereWeight * sphere + kLandmarkWeight * landmarks;
-    if (settings_.aligned) m.cost += kPlaceWeight * places / count;
+    m.cost = 2 * distances / (count * (count - 1)) + kMatchLengthWeight * lengths / count +
+             kSphereWeight * sphere + kMatchLandmarkWeight * landmarks;
+    if (settings_.aligned) m.cost += kMatchPlaceWeight * places / count;
   }
 
   std::vector<HandleMatch> run() const {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostTips = 8;
 constexpr double kTolerance = 0.35;  // of the logarithm of ratios of distances
-constexpr double kMisfit = 0.6;      // radians, of matched tips after the best rotation
+constexpr double kTipMisfit = 0.6;   // radians, of matched tips after the best rotation
 constexpr double kApart = 0.12;      // of the root of the area: tips nearer than that are one
 
 struct Graph {
@@ -211,7 +211,7 @@ std::vector<TipPairs> matchTips(const LimbTips& a, const LimbTips& b, std::size_
       from.push_back(a.place[i]);
       to.push_back(b.place[j]);
     }
-    if (rotationMisfit(bestRotation(from, to), from, to) > kMisfit) continue;
+    if (rotationMisfit(bestRotation(from, to), from, to) > kTipMisfit) continue;
     out.push_back(pairs);
   }
   return out;

@@ -10,7 +10,7 @@
 namespace innermap {
 namespace {
 
-constexpr double kNormalWeight = 2, kLandmarkWeight = 10;
+constexpr double kNormalWeight = 2, kRotationLandmarkWeight = 10;
 
 Mat3 fromQuaternion(double x, double y, double z, double w) {
   return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
@@ -52,7 +52,7 @@ double costOf(const Mat3& rotation, const std::vector<MapSample>& samples,
   for (std::size_t i = 0; i < settings.from.size(); ++i)
     missed += squaredNorm(rotation * settings.from[i] - settings.to[i]);
   if (!settings.from.empty())
-    sum += kLandmarkWeight * missed / static_cast<double>(settings.from.size());
+    sum += kRotationLandmarkWeight * missed / static_cast<double>(settings.from.size());
   return sum;
 }
 

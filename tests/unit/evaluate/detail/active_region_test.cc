@@ -10,12 +10,12 @@
 namespace innermap {
 namespace {
 
-openvdb::FloatGrid::Ptr ball(int resolution) {
+openvdb::FloatGrid::Ptr ballGrid(int resolution) {
   return makeLevelSet(Solid(shapes::icosphere(3)), {.resolution = resolution});
 }
 
 TEST(ActiveRegion, HoldsTheInsideAndTheSkin) {
-  const auto grid = ball(48);
+  const auto grid = ballGrid(48);
   const double voxel = grid->voxelSize()[0];
   const auto region = activeRegion(*grid);
   auto mask = region->getConstAccessor();
@@ -27,7 +27,7 @@ TEST(ActiveRegion, HoldsTheInsideAndTheSkin) {
 }
 
 TEST(ActiveRegion, RefusesASkinBeyondTheBandAndTooMuchMemory) {
-  const auto grid = ball(32);
+  const auto grid = ballGrid(32);
   EXPECT_THROW(activeRegion(*grid, {.skin = 5}), SettingError);
   test::expectOverLimit(100000, [&] { activeRegion(*grid, {.bytesPerVoxel = 100}); });
 }

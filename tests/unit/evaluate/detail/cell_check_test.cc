@@ -13,7 +13,7 @@ namespace {
 using openvdb::Coord;
 using test::Lattice;
 
-Vec3 stay(const Vec3& p) { return p; }
+Vec3 unmoved(const Vec3& p) { return p; }
 
 TEST(CellCheck, AnAffineMapTurnsNoCellOver) {
   Lattice lattice(0.5);
@@ -43,7 +43,7 @@ TEST(CellCheck, AMapOntoAPlaneTurnsEachCellOver) {
 // A voxel is a corner of 24 cells; past the opposite face of its cubes all on that side are over.
 TEST(CellCheck, AVoxelOutOfPlaceTurnsCellsOver) {
   Lattice lattice;
-  lattice.addBox({0, 0, 0}, {6, 6, 6}, stay);
+  lattice.addBox({0, 0, 0}, {6, 6, 6}, unmoved);
   lattice.map->tree().setValue(Coord(3, 3, 3), openvdb::Vec3f(4.5F, 3, 3));
   const CellFigures found = lattice.check();
   EXPECT_GT(found.folded, 0u);
@@ -73,20 +73,20 @@ TEST(CellCheck, ARingThatClosesOverlaps) {
 // Nothing crosses, but the small box lies where the large one is.
 TEST(CellCheck, OnePartInsideAnotherOverlaps) {
   Lattice lattice;
-  lattice.addBox({0, 0, 0}, {9, 9, 9}, stay);
+  lattice.addBox({0, 0, 0}, {9, 9, 9}, unmoved);
   lattice.addBox({20, 0, 0}, {22, 2, 2}, [](const Vec3& p) { return p + Vec3{-16.7, 3.3, 3.4}; });
   EXPECT_EQ(lattice.check().folded, 0u);
   EXPECT_EQ(lattice.check().overlaps, 1);
   Lattice apart;
-  apart.addBox({0, 0, 0}, {9, 9, 9}, stay);
-  apart.addBox({20, 0, 0}, {22, 2, 2}, stay);
+  apart.addBox({0, 0, 0}, {9, 9, 9}, unmoved);
+  apart.addBox({20, 0, 0}, {22, 2, 2}, unmoved);
   EXPECT_EQ(apart.check().overlaps, 0);
 }
 
 // Its inner boundary is wound about once as well.
 TEST(CellCheck, AHollowBoxDoesNotOverlap) {
   Lattice lattice;
-  lattice.addBox({0, 0, 0}, {9, 9, 9}, stay);
+  lattice.addBox({0, 0, 0}, {9, 9, 9}, unmoved);
   for (const Coord& c : openvdb::CoordBBox(Coord(3, 3, 3), Coord(6, 6, 6)))
     lattice.levelSet->tree().setValue(c, 1.0F);
   const CellFigures found = lattice.check();
@@ -96,7 +96,7 @@ TEST(CellCheck, AHollowBoxDoesNotOverlap) {
 
 TEST(CellCheck, NoneWhereNoVoxelsAreNeighbours) {
   Lattice lattice;
-  lattice.addBox({0, 0, 0}, {0, 9, 9}, stay);
+  lattice.addBox({0, 0, 0}, {0, 9, 9}, unmoved);
   EXPECT_EQ(lattice.check().checked, 0u);
 }
 

@@ -11,7 +11,7 @@
 namespace innermap {
 namespace {
 
-Vec3 bent(const Vec3& p) { return {p.x, p.y, p.z + 0.3 * std::sin(3 * p.x)}; }
+Vec3 bentPoint(const Vec3& p) { return {p.x, p.y, p.z + 0.3 * std::sin(3 * p.x)}; }
 
 struct Refined {
   Mesh mesh;
@@ -24,7 +24,7 @@ Refined refined(double chord, std::size_t most = 1'000'000) {
   Refined out{shapes::icosphere(2), RefinedSurface(shapes::icosphere(2)), {}, {}};
   const auto images = [&](const std::vector<SurfacePoint>& places) {
     Points points = interpolate(out.mesh.vertices, out.mesh.triangles, places);
-    for (Vec3& p : points) p = bent(p);
+    for (Vec3& p : points) p = bentPoint(p);
     return points;
   };
   out.images = images(out.surface.vertices);
@@ -45,15 +45,15 @@ TEST(Refine, GoesOnWithWhatIsKnown) {
   Refined r = refined(chord), fresh = r;
   const auto twice = [&](const std::vector<SurfacePoint>& places) {
     Points points = interpolate(r.mesh.vertices, r.mesh.triangles, places);
-    for (Vec3& p : points) p = bent(bent(p));
+    for (Vec3& p : points) p = bentPoint(bentPoint(p));
     return points;
   };
   std::size_t asked[2] = {0, 0};
   for (Refined* one : {&r, &fresh}) {
-    for (Vec3& p : one->images) p = bent(p);
+    for (Vec3& p : one->images) p = bentPoint(p);
     if (one == &r)
       for (auto& edge : one->edges)
-        for (Vec3& p : edge.second) p = bent(p);
+        for (Vec3& p : edge.second) p = bentPoint(p);
     else
       one->edges.clear();
     refine(
@@ -88,7 +88,7 @@ TEST(Refine, EdgesFollowTheImage) {
     for (int e = 0; e < 3; ++e) {
       const int a = t[e], b = t[(e + 1) % 3];
       const Vec3 middle = 0.5 * (r.surface.positions[a] + r.surface.positions[b]);
-      EXPECT_LE(norm(bent(middle) - 0.5 * (r.images[a] + r.images[b])), chord);
+      EXPECT_LE(norm(bentPoint(middle) - 0.5 * (r.images[a] + r.images[b])), chord);
     }
 }
 

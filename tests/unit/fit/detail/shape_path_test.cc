@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;
 
-double farthest(const Points& a, const Points& b) {
+double mostApart(const Points& a, const Points& b) {
   double most = 0;
   for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, norm(a[i] - b[i]));
   return most;
@@ -41,17 +41,17 @@ TEST(ShapePath, BeginsAndEndsExactly) {
   Points to = from.vertices;
   for (Vec3& p : to) p = {p.x + 0.2 * p.y * p.y, p.y - 0.1 * p.x * p.x, 2 * p.z};
   const ShapePath path(from.vertices, to, from.triangles, 1.26);
-  EXPECT_EQ(farthest(path.at(0), from.vertices), 0);
-  EXPECT_LT(farthest(mapped(path.at(1), path.rest()), to), kRounding);
+  EXPECT_EQ(mostApart(path.at(0), from.vertices), 0);
+  EXPECT_LT(mostApart(mapped(path.at(1), path.rest()), to), kRounding);
   // And continuously: just before the end, nearly there.
-  EXPECT_LT(farthest(path.at(1 - 1e-6), path.at(1)), 1e-4);
+  EXPECT_LT(mostApart(path.at(1 - 1e-6), path.at(1)), 1e-4);
 }
 
 TEST(ShapePath, LeavesOutSimilarities) {
   const Mesh from = bar();
   const ScaledMotion motion{2.5, turnAboutZ(2), {10, -3, 4}};
   const ShapePath path(from.vertices, mapped(from.vertices, motion), from.triangles, 2.5);
-  EXPECT_LT(farthest(path.at(0.5), from.vertices), 1e-8);
+  EXPECT_LT(mostApart(path.at(0.5), from.vertices), 1e-8);
   EXPECT_NEAR(path.rest().scale, 2.5, 1e-12);
   EXPECT_LT(norm(path.rest()({1, 2, 3}) - motion({1, 2, 3})), 1e-9);
 }

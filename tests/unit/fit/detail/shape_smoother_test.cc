@@ -33,7 +33,7 @@ TEST(ShapeSmoother, LimbsTurnIntoPitsWithoutCrossings) {
   const Limb stub{0.3, 0}, thin{0.2, 0}, headed{0.2, 0.8}, mushroom{0.2, 1.5};
   for (const Limb& limb : {stub, thin, headed, mushroom})
     for (const double pit : {-1.0, -1.6}) {
-      SCOPED_TRACE(testing::Message()
+      SCOPED_TRACE(::testing::Message()
                    << "a pit of " << pit << ", " << limb.width << " wide, its head " << limb.head);
       const Mesh from = drawnOut(1.5, limb), to = drawnOut(pit, limb);
       const auto path = [&](Between between) {

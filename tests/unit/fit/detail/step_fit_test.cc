@@ -22,7 +22,7 @@ namespace {
 using Move = std::function<Vec3(const Vec3&)>;
 
 // A long body without corners.
-Mesh bar() {
+Mesh plainBar() {
   return moved(ball(4), [](const Vec3& p) { return Vec3{0.6 * p.x, 0.5 * p.y, 2 * p.z}; });
 }
 
@@ -73,7 +73,7 @@ std::vector<double> errorsAt(const StepFit& fit, const BoundaryPair& pair, const
 // it is, and what they compose to is known inside. It is nowhere farther from that than the
 // boundary and, by the maximum principle in the second step's solid, twice the first step's error.
 TEST(StepFitRelease, SimilaritiesAreMetInside) {
-  const Mesh source = bar();
+  const Mesh source = plainBar();
   for (const auto& [tolerance, up] : {std::pair{1e-3, 3}, {1e-5, 3}, {1e-3, -3}}) {  // -: mirrored
     const Move map = [up = up](const Vec3& p) { return Vec3{2 - 3 * p.y, 3 * p.x + 1, up * p.z}; };
     const BoundaryPair pair = makeBoundaryPair(source, moved(source, map));
@@ -101,7 +101,7 @@ TEST(StepFitRelease, ErrorsElsewhereAreThoseOfTheCertificate) {
     Move map;
     double tolerance;
   };
-  for (const Case& c : {Case{bar(), bent(2.5), 2e-3}, Case{bar(), twisted(2), 2e-3},
+  for (const Case& c : {Case{plainBar(), bent(2.5), 2e-3}, Case{plainBar(), twisted(2), 2e-3},
                         Case{ball(4),
                              [](const Vec3& p) {
                                const double angle = std::acos(std::clamp(p.z, -1.0, 1.0));
@@ -154,7 +154,7 @@ TEST(StepFit, TheUnitIsTheTargetsDiagonal) {
 // What the composed map should be is not known of a bend, but a fit ten times as exact is nearer to
 // it: inside, they differ by no more than both say of their boundary.
 TEST(StepFitRelease, InsideErrorsAreBelowTheCertificates) {
-  const Mesh source = bar();
+  const Mesh source = plainBar();
   for (const Move& map : {bent(2.5), twisted(2)}) {
     const BoundaryPair pair = makeBoundaryPair(source, moved(source, map));
     const StepFit coarse = fitted(pair, 5e-3), fine = fitted(pair, 1e-3);
@@ -172,7 +172,7 @@ TEST(StepFitRelease, InsideErrorsAreBelowTheCertificates) {
 // tolerance, one step does the rest of the way, where too few are allowed for a detour.
 TEST(StepFitRelease, OneStepDoesTheRestOfAWayThatIsLost) {
   constexpr double kTolerance = 3e-4;
-  const Mesh source = bar();
+  const Mesh source = plainBar();
   const BoundaryPair pair = makeBoundaryPair(source, moved(source, twisted(12)));
   const StepFit fit =
       fitInSteps(pair, pointsInside(pair.solid(), 2000),
@@ -225,7 +225,7 @@ TEST(StepFitRelease, FewStepsMakeNoDetour) {
 
 // Central differences at two distances: what they are off falls with the square.
 TEST(StepFit, JacobiansAreTheDerivative) {
-  const Mesh source = bar();
+  const Mesh source = plainBar();
   const BoundaryPair pair = makeBoundaryPair(source, moved(source, bent(2.5)));
   const StepFit fit = fitted(pair, 4e-3);
   const Points inside = pointsInside(pair.solid(), 200);
@@ -250,7 +250,7 @@ TEST(StepFit, JacobiansAreTheDerivative) {
 }
 
 TEST(StepFitRelease, SameForAnyNumberOfThreads) {
-  const Mesh source = bar();
+  const Mesh source = plainBar();
   const BoundaryPair pair = makeBoundaryPair(source, moved(source, bent(1)));
   const auto at = [&](int threads) {
     const ThreadLimit limit(threads);

@@ -50,14 +50,14 @@ TEST_F(SurfaceData, GroupsOfAnotherMeshAreRefused) {
   EXPECT_THROW(readGroups(write("a.off", "OFF\n"), mesh), FileError);
 }
 
-const char kPly[] =
+const char kFacesFirst[] =
     "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
     "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
     "property uchar label\nproperty double heat\nend_header\n"
     "3 0 1 2\n0 0 0 7 0.1\n1 0 0 8 0.2\n0 1 0 9 -3e2\n";
 
 TEST_F(SurfaceData, PropertiesOfVertices) {
-  const std::string path = write("data.ply", kPly);
+  const std::string path = write("data.ply", kFacesFirst);
   Mesh mesh;
   mesh.vertices.resize(3);
   const Matrix values = readVertexProperties(path, {"heat", "label"}, mesh);

@@ -54,7 +54,7 @@ TEST(WindingNumber, OneTriangleHasTheClosedFormOfAnOctant) {
 TEST(WindingNumber, AgreesWithTheExactSumOnSoups) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     for (const double size : {0.01, 0.1, 0.5}) {
-      SCOPED_TRACE(testing::Message() << "seed " << seed << " size " << size);
+      SCOPED_TRACE(::testing::Message() << "seed " << seed << " size " << size);
       const Mesh mesh = shapes::soup(2000, size, seed);
       const WindingNumber winding(mesh.vertices, mesh.triangles);
       const CounterRandom random(seed, 6);
@@ -118,7 +118,7 @@ Mesh latticeTetrahedra(int count, int across, std::uint64_t seed) {
 
 TEST(WindingNumber, WholeNumbersWhereRaysMeetEdgesAndVertices) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
     const Mesh mesh = latticeTetrahedra(40, 6, seed);
     const WindingNumber winding(mesh.vertices, mesh.triangles);
     const TriangleTree surface(mesh.vertices, mesh.triangles);

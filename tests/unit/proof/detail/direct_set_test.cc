@@ -45,7 +45,7 @@ std::array<long double, 3> longValue(const HarmonicMap& map, const Vec3& p) {
   return out;
 }
 
-Vec3 randomPoint(const CounterRandom& random, std::uint64_t i) {
+Vec3 pointOf(const CounterRandom& random, std::uint64_t i) {
   return {2 * random.uniform(3 * i) - 1, 2 * random.uniform(3 * i + 1) - 1,
           2 * random.uniform(3 * i + 2) - 1};
 }
@@ -55,7 +55,7 @@ TEST(DirectJet, KnowsItsRounding) {
     for (std::uint64_t seed = 1; seed < 20; ++seed) {
       SCOPED_TRACE(seed);
       const HarmonicMap map = mapOfSeed(seed, cancelling);
-      const Vec3 c = 0.5 * randomPoint(CounterRandom(seed, 5), 0);
+      const Vec3 c = 0.5 * pointOf(CounterRandom(seed, 5), 0);
       const DirectJet jet = directJet(map.field(), c, 0);
       ASSERT_TRUE(jet.known);
       const auto value = longValue(map, c);
@@ -110,12 +110,12 @@ TEST(DirectSet, HoldsImagesAndDeterminants) {
          mapOf(affineOf(kIdentity), innermap::testing::chargesAbout(50, 5, 0.1, seed + 100))});
     const CounterRandom random(seed, 7);
     const double half = 0.02 + 0.1 * random.uniform(1000);
-    const ProofCell cell{0.4 * randomPoint(random, 0), half};
+    const ProofCell cell{0.4 * pointOf(random, 0), half};
     DirectSet set = directSet(cell);
     std::vector<Vec3> places;
     for (std::uint64_t i = 1; i < 40; ++i)
       places.push_back(i < 9 ? half * Vec3{i & 1 ? 1. : -1., i & 2 ? 1. : -1., i & 4 ? 1. : -1.}
-                             : half * randomPoint(random, i));
+                             : half * pointOf(random, i));
     std::vector<Vec3> at;
     for (const Vec3& t : places) at.push_back(cell.center + t);
     for (const HarmonicMap& step : map.steps()) {

@@ -57,7 +57,7 @@ TEST(GreedyRemovalRelease, IsTheLoopOneByOneForAnyNumberOfThreads) {
     const NeighbourWeight weight{radius, 0.3 * radius};
     EXPECT_GT(grid.cubes(4).size(), 5u);
     for (const std::size_t count : {0u, 1u, 700u, 2000u, 2999u, 3000u}) {
-      SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << count << " left");
+      SCOPED_TRACE(::testing::Message() << "seed " << seed << ", " << count << " left");
       const std::vector<std::size_t> expected = oneByOne(grid, count, weight);
       for (const int threads : {1, 4}) {
         const ThreadLimit limit(threads);
