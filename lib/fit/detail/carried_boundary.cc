@@ -130,6 +130,11 @@ void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
   solid_ = Solid(now, solid);
 }
 
+double CarriedBoundary::pieces() const {
+  return static_cast<double>(solid_.surface().triangles.size()) /
+         static_cast<double>(mesh().triangles.size());
+}
+
 Points CarriedBoundary::imagesOf(const std::vector<SurfacePoint>& places, bool exact) const {
   if (steps_.empty()) return positionsOf(solid_, places);
   const auto throughSteps = [&](const std::vector<SurfacePoint>& some) {

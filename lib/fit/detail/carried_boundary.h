@@ -38,6 +38,10 @@ class CarriedBoundary {
   // About the present solid, closed.
   const Mesh& mesh() const { return solid_.repaired().mesh; }
 
+  // Triangles of its outer surface over those of the mesh: 1 where the mesh does not run through
+  // itself. Each crossing cuts triangles into pieces; parts that are buried in it count for less.
+  double pieces() const;
+
   // One step further; after the last one there is no problem any more. Throws DataError when what
   // is left has no inside, Cancelled.
   void advance(const HarmonicMap& step, bool last);

@@ -53,6 +53,11 @@ constexpr double kKept = 0.375, kMended = 0.5, kFar = 2, kLastKept = 0.25, kLast
 // steps that missed left 1.8 times what they may (2.2 through smoothed shapes). Where an
 // intermediate shape runs through itself a step leaves much more, and so do those after it.
 constexpr double kLeap = 2.5, kSmoothedLeap = 4, kLost = 6;
+// Pieces that a mesh is cut into where it runs through itself: where the shape that the steps have
+// made has so many times those of the source, the way is lost. Each step misses then, folds the
+// surface further, and takes longer than the one before. Ways that arrived had up to 1.13; through
+// smoothed shapes, which may untangle, up to 1.42.
+constexpr double kMostPieces = 1.15, kMostSmoothedPieces = 1.6;
 // Steps in a row through smoothed shapes that did not fold, before one twice as long is tried. If
 // that folds, twice as many come before the next trial: near the target longer steps keep folding,
 // and each trial costs a fit.
@@ -135,6 +140,7 @@ class StepFitter {
         path_(vertices_, pair.target.moved, triangles_, growthOf(pair), between),
         unit_(pair.target.diagonal / path_.rest().scale),
         boundary_(pair.solid(), carrySettings()),
+        piecesAtFirst_(boundary_.pieces()),
         inside_{inside, {}},
         share_(smoothed_ ? kUsualShare : kShare) {}
 
@@ -191,7 +197,7 @@ class StepFitter {
   bool foldsMany() const { return folded_ > kManyFolds; }
 
   // Whether smoothed shapes may help: they do not where charges are missing.
-  bool runsThroughItself() const { return leapt_ || foldsMany(); }
+  bool runsThroughItself() const { return leapt_ || foldsMany() || isCrumpled(); }
 
   // The rest of the way at once.
   void jump() {
@@ -318,7 +324,11 @@ class StepFitter {
 
   // Whether what is left of the way cannot make the map good.
   bool isLost() const {
-    return (!smoothed_ && missed_ > kLost * settings_.tolerance) || leapt_ || foldsMany();
+    return (!smoothed_ && missed_ > kLost * settings_.tolerance) || runsThroughItself();
+  }
+
+  bool isCrumpled() const {
+    return boundary_.pieces() > (smoothed_ ? kMostSmoothedPieces : kMostPieces) * piecesAtFirst_;
   }
 
   bool leaps(const MapStep& step) const {
@@ -358,6 +368,7 @@ class StepFitter {
   const ShapePath path_;
   const double unit_;
   CarriedBoundary boundary_;
+  const double piecesAtFirst_;
   MappedPoints inside_;
   std::vector<MapStep> records_;
   double at_ = 0;  // of the way

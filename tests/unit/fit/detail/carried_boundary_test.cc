@@ -62,6 +62,16 @@ TEST_F(Carried, LaterOnesAreOfTheImage) {
   }
 }
 
+TEST_F(Carried, PiecesTellThatTheShapeRunsThroughItself) {
+  CarriedBoundary boundary(solid, settings);
+  EXPECT_DOUBLE_EQ(boundary.pieces(), 1);
+  boundary.advance(bending({0.5, 0, 0}, 0.4), false);
+  EXPECT_DOUBLE_EQ(boundary.pieces(), 1);
+  const Solid touching(
+      shapes::joined(shapes::icosphere(3), shapes::icosphere(3, 1, {1.95, 0.01, 0.02})));
+  EXPECT_GT(CarriedBoundary(touching, settings).pieces(), 1.01);
+}
+
 // The points are 0.1 short of where they should be.
 TEST_F(Carried, WaysMakeUpForWhatIsOff) {
   CarriedBoundary boundary(solid, settings);
