@@ -5,7 +5,7 @@ set(INNERMAP_MODULES_FOLDER ${CMAKE_INSTALL_LIBDIR}/innermap)
 set(INNERMAP_MODULES_BUILD_FOLDER ${PROJECT_BINARY_DIR}/lib/modules)
 
 # With CMAKE_UNITY_BUILD, sources of one folder are compiled together, CMAKE_UNITY_BUILD_BATCH_SIZE at most:
-# what they include and instantiate alike is compiled once, for less than half the processor time. So names
+# what they include and instantiate alike is compiled once, for about half the processor time. So names
 # in the unnamed namespaces of a folder's sources differ. SKIP_UNITY_BUILD_INCLUSION leaves a source out.
 function(innermap_compile_together target)
   get_target_property(together ${target} UNITY_BUILD)

@@ -10,6 +10,7 @@
 #include "report/figures.h"
 
 namespace innermap {
+
 Figures figures(const ReportMesh& m) {
   return together(
       {{{"path", m.path, "file", ""},

@@ -55,8 +55,8 @@ constexpr double kKept = 0.375, kMended = 0.5, kFar = 2, kLastKept = 0.25, kLast
 constexpr double kLeap = 2.5, kSmoothedLeap = 4, kLost = 6;
 // Pieces that a mesh is cut into where it runs through itself: where the shape that the steps have
 // made has so many times those of the source, the way is lost. Each step misses then, folds the
-// surface further, and takes longer than the one before. Ways that arrived had up to 1.13; through
-// smoothed shapes, which may untangle, up to 1.42.
+// surface further, and takes longer than the one before. Ways that arrived had up to 1.13, one
+// had 1.42; one that crawled through smoothed shapes had 2.
 constexpr double kMostPieces = 1.15, kMostSmoothedPieces = 1.6;
 // Steps in a row through smoothed shapes that did not fold, before one twice as long is tried. If
 // that folds, twice as many come before the next trial: near the target longer steps keep folding,

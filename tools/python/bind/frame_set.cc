@@ -16,8 +16,6 @@
 namespace py = pybind11;
 
 namespace innermap::python {
-namespace {}  // namespace
-
 void FittingOptions::describe(Keywords& k) {
   k.object("only", &only, "str", "which of the frames, by number: '12', '1-48', '1-48x2'; all");
   k.object("numbers", &numbers, "Sequence[int]",
