@@ -39,7 +39,7 @@ constexpr double kMarkAccuracy = 1e-2, kCheckAccuracy = 1e-3;
 constexpr double kLeastGain = 0.97;  // of the score in the rounds of patience
 // Of the most charges: a round for the few that are left costs as much as the one before.
 constexpr double kFull = 0.97;
-constexpr double kForNothing = 4;     // times the charges that did as well
+constexpr double kForNothing = 4;     // times the charges that did as well, by score and by excess
 constexpr double kMostRounds = 20;    // that are looked ahead
 constexpr std::size_t kLookBack = 2;  // rounds, for how the next will go
 constexpr double kOfOutlierRounds = 0.5;
@@ -81,10 +81,13 @@ class AdaptiveFitting {
   Points withoutCharge(const Level& level, const Points& marks) const;
   void solve();
   double score(const BoundaryError& error) const;
+  double excess(const std::vector<double>& errors) const;
+  double sourcesThatDid(const std::vector<double>& measures) const;
   void keepIfBest();
   double workDone() const;
   bool gains() const;
   std::size_t sourceCount() const;
+  bool isFull() const;
   std::uint64_t memory() const;
 
   const AdaptiveProblem& problem_;
@@ -100,6 +103,7 @@ class AdaptiveFitting {
   double bestScore_ = 0;
   std::size_t bestRound_ = 0;  // from 1
   std::vector<AdaptiveRound> rounds_;
+  std::vector<double> excesses_;  // of the rounds
   AdaptiveEnd end_ = AdaptiveEnd::met;
   std::uint64_t requests_ = 0;
   const std::uint64_t room_ = memoryLeft();  // bytes
@@ -130,6 +134,10 @@ std::size_t AdaptiveFitting::sourceCount() const {
   std::size_t count = 0;
   for (const Level& l : levels_) count += l.sources.size();
   return count;
+}
+
+bool AdaptiveFitting::isFull() const {
+  return static_cast<double>(sourceCount()) >= kFull * static_cast<double>(settings_.maxSources);
 }
 
 std::uint64_t AdaptiveFitting::memory() const {
@@ -258,7 +266,7 @@ bool AdaptiveFitting::refineOnce(std::vector<Points> marks) {
 bool AdaptiveFitting::refine(const std::vector<Points>& marks) {
   std::vector<Points> wanted = marks;
   for (int tries = 0; tries < kMostLevels; ++tries) {
-    if (static_cast<double>(sourceCount()) >= kFull * static_cast<double>(settings_.maxSources)) {
+    if (isFull()) {
       end_ = AdaptiveEnd::maxSources;
       return false;
     }
@@ -311,6 +319,23 @@ double AdaptiveFitting::score(const BoundaryError& error) const {
   return error.rms > 0 ? std::min(1.0, 1e-3 * error.max / error.rms) : 0;
 }
 
+// How far the errors are beyond the goal, of all points. Where a hundredth of the boundary is thin,
+// the error at 99% stays until charges are as fine as that part, while this falls in each round.
+double AdaptiveFitting::excess(const std::vector<double>& errors) const {
+  double sum = 0;
+  for (const double error : errors)
+    sum += std::max(0.0, std::log(error / (kMargin * settings_.tolerance)));
+  return sum / static_cast<double>(errors.size());
+}
+
+// The least charges with which a measure of the rounds was as good as it ever was, or nearly.
+double AdaptiveFitting::sourcesThatDid(const std::vector<double>& measures) const {
+  const double best = *std::min_element(measures.begin(), measures.end());
+  const auto good = std::find_if(measures.begin(), measures.end(),
+                                 [&](double m) { return kLeastGain * m <= best; });
+  return static_cast<double>(rounds_[static_cast<std::size_t>(good - measures.begin())].sources);
+}
+
 void AdaptiveFitting::keepIfBest() {
   const double now = score(rounds_.back().error);
   if (best_ && !(now < bestScore_)) return;
@@ -329,22 +354,18 @@ void AdaptiveFitting::keepIfBest() {
 }
 
 // Whether one of the last rounds was better than all before, and charges have not grown too much
-// since it last became so.
+// since the score or the excess last became so.
 bool AdaptiveFitting::gains() const {
-  const auto good = std::find_if(rounds_.begin(), rounds_.end(), [&](const AdaptiveRound& round) {
-    return kLeastGain * score(round.error) <= bestScore_;
-  });
+  std::vector<double> scores;
+  for (const AdaptiveRound& round : rounds_) scores.push_back(score(round.error));
   if (static_cast<double>(rounds_.back().sources) >
-      kForNothing * static_cast<double>(good->sources))
+      kForNothing * std::max(sourcesThatDid(scores), sourcesThatDid(excesses_)))
     return false;
   const auto patience = static_cast<std::size_t>(settings_.patience);
   if (rounds_.size() <= patience) return true;
-  double best[2] = {score(rounds_.front().error), score(rounds_.back().error)};
-  for (std::size_t r = 0; r < rounds_.size(); ++r) {
-    double& part = best[r + patience < rounds_.size() ? 0 : 1];
-    part = std::min(part, score(rounds_[r].error));
-  }
-  return best[1] < kLeastGain * best[0];
+  const auto late = scores.end() - static_cast<std::ptrdiff_t>(patience);
+  return *std::min_element(late, scores.end()) <
+         kLeastGain * *std::min_element(scores.begin(), late);
 }
 
 AdaptiveResult AdaptiveFitting::run() {
@@ -368,6 +389,7 @@ AdaptiveResult AdaptiveFitting::run() {
     const BoundaryError error = marks_->awayFromJumps(fresh.points, errors);
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
+    excesses_.push_back(excess(errors));
     keepIfBest();
     reportProgress("meeting the tolerance", workDone());
     if (settings_.goOn && !settings_.goOn(*field_, static_cast<int>(round))) {
@@ -382,7 +404,7 @@ AdaptiveResult AdaptiveFitting::run() {
     }
     if (error.p99 <= kMargin * settings_.tolerance && ++outliers > settings_.outlierRounds) break;
     if (!gains()) {
-      end_ = AdaptiveEnd::noGain;
+      end_ = isFull() ? AdaptiveEnd::maxSources : AdaptiveEnd::noGain;
       break;
     }
     if (outOfTime(kNextRound * secondsSince(began))) {

@@ -256,6 +256,38 @@ TEST(AdaptiveFitRelease, GoesOnBelowALevelWhereThatHasNoRoom) {
   EXPECT_GT(seen, 0u);
 }
 
+// A fiftieth of the sphere is met by no level before the fourth, so that the error at 99% stays,
+// while waves elsewhere take ten times the first charges.
+TEST(AdaptiveFit, GoesOnUntilChargesAreAsFineAsASmallPart) {
+  const auto waves = [](const Points& points) {
+    Matrix v = testing::harmonicMapValues(points);
+    for (std::size_t i = 0; i < points.size(); ++i) v(i, 0) += 0.035 * std::sin(20 * points[i].x);
+    return v;
+  };
+  Ball ball;
+  ball.problem.placeCollocation = [&](const PlacementRequest& request) {
+    const Points points = darts(request, 1);
+    return BoundarySamples{points, waves(points)};
+  };
+  ball.problem.draw = [&](std::size_t count, std::uint64_t draw) {
+    const std::vector<double>& tried = ball.distances;
+    const bool fine = *std::min_element(tried.begin(), tried.end()) < tried.front() / 7;
+    const Points points = onSphere(count, 7 + draw);
+    Matrix values = waves(points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!fine && points[i].x > 0.96) values(i, 1) += 0.5;
+    return BoundarySamples{points, std::move(values)};
+  };
+  ball.settings.firstSources = 40;
+  ball.settings.tolerance = 7e-3;
+  ball.settings.outlierRounds = 0;
+  const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(r.end, AdaptiveEnd::met);
+  ASSERT_GE(r.rounds.size(), 4u);
+  EXPECT_GT(r.rounds[2].error.p99, 0.97 * r.rounds[0].error.p99);
+  EXPECT_GT(r.rounds[2].sources, 4 * r.rounds[0].sources);
+}
+
 // Quarters are moved along each other: no charges meet that, and finer ones about the lines between
 // them are no better.
 TEST(AdaptiveFitRelease, DoesNotChaseJumps) {
