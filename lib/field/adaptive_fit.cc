@@ -332,7 +332,7 @@ double AdaptiveFitting::excess(const std::vector<double>& errors) const {
 double AdaptiveFitting::sourcesThatDid(const std::vector<double>& measures) const {
   const double best = *std::min_element(measures.begin(), measures.end());
   const auto good = std::find_if(measures.begin(), measures.end(),
-                                 [&](double m) { return kLeastGain * m <= best; });
+                                 [&](double m) { return !(kLeastGain * m > best); });
   return static_cast<double>(rounds_[static_cast<std::size_t>(good - measures.begin())].sources);
 }
 

@@ -27,8 +27,8 @@ constexpr double kAlongNormal = 0.7;
 constexpr int kParts = 4, kMostParts = 400;
 constexpr double kFewMore = 0.05, kFewTaken = 0.005;
 // Candidates in a row that are not taken, before their place counts as full: where there never was
-// room, as in creases; elsewhere. Half of all candidates were thrown there, for a twentieth of the
-// points.
+// room, as in creases; elsewhere. Nearly half of all candidates were thrown there, for a twentieth
+// of the points (spot-bend onto cheburashka-spikes).
 constexpr int kMissesAtFirst = 8, kMisses = 16;
 constexpr std::size_t kLeastPart = 128;
 constexpr double kLargestPart = 1e6;

@@ -2,8 +2,7 @@
 // fit adds where its error is.
 //
 // Dart throwing (Cook, "Stochastic Sampling in Computer Graphics", 1986) in rounds of random
-// candidates until hardly any finds room. Where some in a row found none, no more are thrown, as in
-// White, Cline and Egbert, "Poisson disk point sets by hierarchical dart throwing" (2007). The
+// candidates until hardly any finds room; where some in a row found none, no more are thrown. The
 // result is near to maximal, the same for any number of threads. All lengths are fractions of the
 // solid's diagonal.
 #pragma once
