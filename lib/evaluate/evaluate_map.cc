@@ -35,6 +35,16 @@ struct LeafOutput {
   }
 };
 
+bool mayRepair(const EvaluateSettings& settings) { return settings.repairUpTo > 0; }
+
+// With the grids that repairing takes.
+EvaluateSettings withRepaired(const EvaluateSettings& settings) {
+  EvaluateSettings out = settings;
+  out.map = out.map || mayRepair(settings);
+  out.jacobian = out.jacobian || mayRepair(settings);
+  return out;
+}
+
 class Evaluation {
  public:
   Evaluation(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
@@ -46,7 +56,7 @@ class Evaluation {
     accuracy_ = settings.accuracy * targetExtent(map, solid);
   }
 
-  MapValues values() const;
+  MapValues values(const FieldRegion& region) const;
   MapGrids conclude(MapValues values) const;
 
  private:
@@ -54,7 +64,6 @@ class Evaluation {
 
   bool isFolded(double det) const { return !((settings_.mirrored ? -det : det) > 0); }
   void markFolds(MapGrids& out) const;
-  bool mayRepair() const { return settings_.repairUpTo > 0; }
   void repair(MapValues& values) const;
   LeafTotals leavesOf(const std::set<openvdb::Coord>& blocks, const MapValues& values) const;
   MapTotals store(const LeafValues& values, const MapGrids& out) const;
@@ -185,7 +194,7 @@ Evaluation::LeafTotals Evaluation::leavesOf(const std::set<openvdb::Coord>& bloc
     if (blocks.count(blockOf(leaf->origin())) > 0) addLeaf(values.grids, leaf->origin(), *region);
   const std::vector<openvdb::Coord> origins = leafOrigins(*region);
   for (const openvdb::Coord& origin : origins) leaves.emplace(origin, MapTotals());
-  visitField(map_, solid_, levelSet_, *region,
+  visitField(map_, FieldRegion(solid_, levelSet_, *region),
              [&](std::size_t leaf, const LeafValues& found) {
                leaves.at(origins[leaf]) = store(found, values.grids);
              },
@@ -221,7 +230,7 @@ void Evaluation::repair(MapValues& values) const {
   const PartOfStage evaluating(kMoving, 1);
   LeafTotals leaves = leavesOf(blocks, values);
   const std::vector<openvdb::Coord> origins = leafOrigins(*again);
-  visitField(map_, solid_, levelSet_, *again,
+  visitField(map_, FieldRegion(solid_, levelSet_, *again),
              [&](std::size_t leaf, const LeafValues& found) {
                leaves.at(origins[leaf]) =
                    store(RepairedLeaf(found, repair, settings_.origin).leaf(), out);
@@ -235,23 +244,12 @@ void Evaluation::repair(MapValues& values) const {
   }
 }
 
-MapValues Evaluation::values() const {
-  constexpr std::uint64_t kMaskBytes = 1;
-  const bool wantsMap = settings_.map || mayRepair(),
-             wantsJacobian = settings_.jacobian || mayRepair();
-  RegionSettings where;
-  where.skin = settings_.skin;
-  where.bytesPerVoxel = kMaskBytes + (wantsMap ? 12 : 0) + (wantsJacobian ? 4 : 0) +
-                        (settings_.harmonicEnergy ? 4 : 0) + (settings_.deformationEnergy ? 4 : 0);
-  const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
+MapValues Evaluation::values(const FieldRegion& region) const {
   MapValues out;
-  EvaluateSettings wanted = settings_;
-  wanted.map = wantsMap;
-  wanted.jacobian = wantsJacobian;
-  MapGrids& grids = out.grids = mapGridsOn(*region, wanted);
-  for (const openvdb::Coord& origin : leafOrigins(*region))
-    out.leaves.emplace_back(origin, MapTotals());
-  visitField(map_, solid_, levelSet_, *region,
+  MapGrids& grids = out.grids = mapGridsOn(region.mask(), withRepaired(settings_));
+  for (std::size_t l = 0; l < region.leafCount(); ++l)
+    out.leaves.emplace_back(region.origin(l), MapTotals());
+  visitField(map_, region,
              [&](std::size_t leaf, const LeafValues& values) {
                out.leaves[leaf].second = store(values, grids);
              },
@@ -275,7 +273,7 @@ MapGrids Evaluation::conclude(MapValues values) const {
   }
   if (out.jacobian && out.foldedVoxels > 0) markFolds(out);
   const double most = settings_.repairUpTo * static_cast<double>(interior);
-  if (mayRepair() && static_cast<double>(out.foldedVoxels) <= most) repair(values);
+  if (mayRepair(settings_) && static_cast<double>(out.foldedVoxels) <= most) repair(values);
   if (!settings_.map) out.map.reset();
   if (!settings_.jacobian) {
     out.jacobian.reset();
@@ -375,16 +373,39 @@ MapTotals MapTotals::of(const double* n) {
   return {n[0], n[1], n[2], n[3], n[4], n[5], n[6], count(n[7]), count(n[8]), count(n[9])};
 }
 
+openvdb::MaskGrid::Ptr mapRegion(const openvdb::FloatGrid& levelSet,
+                                 const EvaluateSettings& settings) {
+  require(settings);
+  constexpr std::uint64_t kMaskBytes = 1;
+  const EvaluateSettings wanted = withRepaired(settings);
+  RegionSettings where;
+  where.skin = settings.skin;
+  where.bytesPerVoxel = kMaskBytes + (wanted.map ? 12 : 0) + (wanted.jacobian ? 4 : 0) +
+                        (wanted.harmonicEnergy ? 4 : 0) + (wanted.deformationEnergy ? 4 : 0);
+  return activeRegion(levelSet, where);
+}
+
+MapValues mapValues(const ComposedMap& map, const FieldRegion& region,
+                    const EvaluateSettings& settings) {
+  return Evaluation(map, region.solid(), region.levelSet(), settings).values(region);
+}
+
 MapValues mapValues(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
                     const EvaluateSettings& settings) {
-  require(settings);
-  return Evaluation(map, solid, levelSet, settings).values();
+  const openvdb::MaskGrid::Ptr mask = mapRegion(levelSet, settings);
+  return mapValues(map, FieldRegion(solid, levelSet, *mask), settings);
 }
 
 MapGrids concludeValues(const ComposedMap& map, const Solid& solid,
                         const openvdb::FloatGrid& levelSet, const EvaluateSettings& settings,
                         MapValues values) {
   return Evaluation(map, solid, levelSet, settings).conclude(std::move(values));
+}
+
+MapGrids evaluateMap(const ComposedMap& map, const FieldRegion& region,
+                     const EvaluateSettings& settings) {
+  return concludeValues(map, region.solid(), region.levelSet(), settings,
+                        mapValues(map, region, settings));
 }
 
 MapGrids evaluateMap(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,

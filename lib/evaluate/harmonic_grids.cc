@@ -129,7 +129,7 @@ HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
                             {g[0], g[1], g[2]});
         }
     };
-    visitField(field, solid, *out.surface, *region, store,
+    visitField(field, FieldRegion(solid, *out.surface, *region), store,
                {settings.accuracy * settings.span, "evaluating the field"});
     for (const ChannelGrids& grids : channels) grids.append(out.fields);
   });

@@ -22,17 +22,22 @@
 namespace innermap {
 namespace {
 
-EvaluateSettings evaluateSettings(const Solid& source, const TargetBoundary& target,
-                                  double accuracy, const MapGridSettings& settings) {
+// What no target is needed for.
+EvaluateSettings evaluateSettings(const MapGridSettings& settings) {
   EvaluateSettings out;
   out.lame = settings.lame;
   out.repairUpTo = settings.repair == RepairFolds::on          ? 1
                    : settings.repair == RepairFolds::automatic ? kRepairedFolds
                                                                : 0;
-  out.targetVolume = target.volume;
-  out.mirrored = orientationOf(source, target) < 0;
-  out.accuracy = accuracy;
   return out;
+}
+
+EvaluateSettings onto(const TargetBoundary& target, const Solid& source, double accuracy,
+                      EvaluateSettings settings) {
+  settings.targetVolume = target.volume;
+  settings.mirrored = orientationOf(source, target) < 0;
+  settings.accuracy = accuracy;
+  return settings;
 }
 
 constexpr double kTenth = 0.1;  // of the tolerance
@@ -172,7 +177,7 @@ namespace {
 
 EvaluateSettings evaluateSettings(const MappedSolid& mapped, const MapGridSettings& settings) {
   EvaluateSettings out =
-      evaluateSettings(mapped.solid(), mapped.boundary.target, sumAccuracy(mapped), settings);
+      onto(mapped.boundary.target, mapped.solid(), sumAccuracy(mapped), evaluateSettings(settings));
   out.origin = localOriginOf(mapped);
   return out;
 }
@@ -269,6 +274,9 @@ std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
   // Leaves of 8^3 voxels are allocated whole: along the surface they reach about 6 voxels to either
   // side. Map, Jacobian, two energies, masks; map_local is one more.
   constexpr double kReach = 12, kVoxel = 26, kLocal = 13, kLeaf = 512;
+  // Of a skin's voxel and of one that the surface cuts, kept by FieldRegion: bytes to the
+  // surface's.
+  constexpr double kPlan = 160;
   // Measured, bytes: what the first of several steps gives, for as many leaves as are evaluated
   // together (visit_field.cc); the boundary of the cells, a face, where overlaps are looked for and
   // beyond (cell_check.cc); anything else.
@@ -280,11 +288,11 @@ std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
   const double between = kind.steps > 1 ? kBetweenSteps * std::min(kTogether, voxels / kLeaf) : 0;
   // Two triangles of a cell's side, of which a surface has one and a half to a square on average.
   const double faces = 3 * area;
-  const double cells = (faces < kMostFaces ? kFace : kBeyond) * (kind.cells ? faces : 0);
+  const double rest = kind.frame ? kPlan * area : (faces < kMostFaces ? kFace : kBeyond) * faces;
   // The density is a second level set.
   return 2 * levelSetMemory(solid, levelSet) +
          static_cast<std::uint64_t>((kVoxel + (kind.local ? kLocal : 0)) * voxels +
-                                    std::max(between, cells) + kOther);
+                                    std::max(between, rest) + kOther);
 }
 
 std::uint64_t mapBlockMemory(const MapGridKind& kind) {
@@ -303,15 +311,23 @@ void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {
 
 FrameEvaluator::FrameEvaluator(const FrameFitter& fitter, std::vector<std::string> names,
                                const MapGridSettings& settings)
-    : fitter_(fitter), names_(std::move(names)), settings_(settings) {
+    : fitter_(fitter), names_(std::move(names)), evaluate_(evaluateSettings(settings)) {
   for (const std::string& name : names_)
     if (std::find(mapGridNames().begin(), mapGridNames().end(), name) == mapGridNames().end())
       throw SettingError(
           "grids", fmt::format("'{}' is not one of {}", name, fmt::join(mapGridNames(), ", ")));
+  if (settings.repair != RepairFolds::on) evaluate_.repairUpTo = 0;
+  evaluate_.map = wants("map");
+  evaluate_.jacobian = wants("jacobian");
+  evaluate_.harmonicEnergy = wants("harmonic_energy");
+  evaluate_.deformationEnergy = wants("deformation_energy");
   timed(seconds_, "voxelize", [&] {
     surface_ = makeLevelSet(fitter.solid(), levelSetSettings(settings));
     if (wants("density")) density_ = makeFog(*surface_);
     warnings_ = checkLevelSet(*surface_, fitter.solid()).warnings;
+    mask_ = mapRegion(*surface_, evaluate_);
+    region_ = std::make_shared<FieldRegion>(fitter.solid(), *surface_, *mask_);
+    region_->keepPlans();
   });
   requireInterior(interiorVoxels(*surface_), fitter.solid(), fitter.rest().mesh.name);
 }
@@ -321,14 +337,8 @@ bool FrameEvaluator::wants(const char* name) const {
 }
 
 MapGrids FrameEvaluator::evaluate(const FrameFit& fit) const {
-  EvaluateSettings evaluate =
-      evaluateSettings(fitter_.solid(), fit.boundary, sumAccuracy(fit.error.rms), settings_);
-  if (settings_.repair != RepairFolds::on) evaluate.repairUpTo = 0;
-  evaluate.map = wants("map");
-  evaluate.jacobian = wants("jacobian");
-  evaluate.harmonicEnergy = wants("harmonic_energy");
-  evaluate.deformationEnergy = wants("deformation_energy");
-  return evaluateMap(HarmonicMap(fit.field), fitter_.solid(), *surface_, evaluate);
+  return evaluateMap(HarmonicMap(fit.field), *region_,
+                     onto(fit.boundary, fitter_.solid(), sumAccuracy(fit.error.rms), evaluate_));
 }
 
 openvdb::GridPtrVec FrameEvaluator::grids(const NumberedFit& frame, const MapGrids& values) const {

@@ -1,7 +1,5 @@
 #include "evaluate/visit_field.h"
 
-#include <openvdb/tree/LeafManager.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -16,22 +14,6 @@ namespace {
 // not visited yet, which of maps in steps is all that the first one gives.
 constexpr std::size_t kLeavesTogether = 4096, kLeavesTogetherInSteps = 1024;
 constexpr std::size_t kLeafPoints = 512;
-
-using Leaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
-
-void requireSameLattice(const openvdb::FloatGrid& levelSet, const openvdb::MaskGrid& region) {
-  // To a thousandth of a voxel: equality of transforms is by absolute tolerances, which rounding of
-  // what is far from the origin exceeds.
-  constexpr double kOff = 1e-3, kFar = 1000;  // voxels
-  const auto &a = levelSet.transform(), &b = region.transform();
-  const auto off = [&](double index) {
-    const openvdb::Vec3d at(index);
-    return (a.indexToWorld(at) - b.indexToWorld(at)).length() / a.voxelSize()[0];
-  };
-  if (!a.isLinear() || !b.isLinear() || !(off(0) <= kOff) || !(off(kFar) <= kOff))
-    throw DataError("region: is on another lattice than the level set");
-  if (region.tree().hasActiveTiles()) throw DataError("region: has active tiles, not voxels only");
-}
 
 // What one leaf hands to the visitor, gathered from the lattice sums and the skin's samples.
 class LeafBuffer {
@@ -137,28 +119,25 @@ void finishInside(const ComposedMap& map, std::vector<LeafBuffer>& buffers,
 }
 
 // `field` is the first step of `map`, where there is one.
-void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid& solid,
-                 const openvdb::FloatGrid& levelSet, const Leaves& leaves, std::size_t begin,
-                 std::size_t end, const LeafVisitor& visit, const VisitSettings& settings) {
+void visitLeaves(const HarmonicField& field, const ComposedMap* map, const FieldRegion& region,
+                 std::size_t begin, std::size_t end, const LeafVisitor& visit,
+                 const VisitSettings& settings) {
   const std::size_t count = end - begin;
-  std::vector<LeafPlan> plans(count);
-  parallelBlocks(count, 4, [&](std::size_t first, std::size_t last) {
-    for (std::size_t l = first; l < last; ++l)
-      plans[l] = planLeaf(leaves.leaf(begin + l), levelSet, solid);
-  });
+  std::vector<LeafPlan> made;
+  const LeafPlan* const plans = region.plans(begin, end, made);
   Points onSkin;
   std::vector<std::size_t> firstRow;
   LatticeBlocks lattice;
-  lattice.spacing = levelSet.voxelSize()[0];
-  const openvdb::Vec3d origin = levelSet.transform().indexToWorld(openvdb::Vec3d(0));
+  lattice.spacing = region.levelSet().voxelSize()[0];
+  const openvdb::Vec3d origin = region.levelSet().transform().indexToWorld(openvdb::Vec3d(0));
   lattice.origin = {origin.x(), origin.y(), origin.z()};
   for (std::size_t l = 0; l < count; ++l) {
-    const openvdb::Coord first = leaves.leaf(begin + l).origin();
+    const openvdb::Coord first = region.origin(begin + l);
     lattice.blocks.push_back({{first.x(), first.y(), first.z()}, plans[l].inside});
     firstRow.push_back(onSkin.size());
     for (const LeafPlan::Skin& voxel : plans[l].skin) onSkin.push_back(voxel.at);
   }
-  const auto leafCount = static_cast<double>(leaves.leafCount());
+  const auto leafCount = static_cast<double>(region.leafCount());
   const PartOfStage part(static_cast<double>(begin) / leafCount,
                          static_cast<double>(end) / leafCount);
   const EvaluateFieldSettings all{settings.accuracy, true},
@@ -166,7 +145,7 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
   FieldSamples skin = field.evaluate(onSkin, all);
   const auto gather = [&](LeafBuffer& buffer, std::size_t l, const double* values,
                           const double* gradients) {
-    buffer.gather(leaves.leaf(begin + l).origin(), plans[l], values, gradients, skin, firstRow[l]);
+    buffer.gather(region.origin(begin + l), plans[l], values, gradients, skin, firstRow[l]);
   };
   if (!map || map->steps().size() == 1)
     return field.onLattice(
@@ -196,25 +175,22 @@ void requireAccuracy(const VisitSettings& settings) {
 }
 
 // Of the leaves that are visited together from `begin` on, which are in their tree's order.
-std::size_t endOfBatch(const Leaves& leaves, std::size_t begin, std::size_t most) {
-  const openvdb::Coord block = blockOf(leaves.leaf(begin).origin());
-  const std::size_t last = std::min(begin + most, leaves.leafCount());
+std::size_t endOfBatch(const FieldRegion& region, std::size_t begin, std::size_t most) {
+  const openvdb::Coord block = blockOf(region.origin(begin));
+  const std::size_t last = std::min(begin + most, region.leafCount());
   std::size_t end = begin + 1;
-  while (end < last && blockOf(leaves.leaf(end).origin()) == block) ++end;
+  while (end < last && blockOf(region.origin(end)) == block) ++end;
   return end;
 }
 
-void visitAll(const HarmonicField& field, const ComposedMap* map, const Solid& solid,
-              const openvdb::FloatGrid& levelSet, const openvdb::MaskGrid& region,
+void visitAll(const HarmonicField& field, const ComposedMap* map, const FieldRegion& region,
               const LeafVisitor& visit, const VisitSettings& settings) {
   requireAccuracy(settings);
-  requireSameLattice(levelSet, region);
-  const Leaves leaves(region.tree());
   const std::size_t together =
       map && map->steps().size() > 1 ? kLeavesTogetherInSteps : kLeavesTogether;
-  for (std::size_t begin = 0, end = 0; begin < leaves.leafCount(); begin = end) {
-    end = endOfBatch(leaves, begin, together);
-    visitLeaves(field, map, solid, levelSet, leaves, begin, end, visit, settings);
+  for (std::size_t begin = 0, end = 0; begin < region.leafCount(); begin = end) {
+    end = endOfBatch(region, begin, together);
+    visitLeaves(field, map, region, begin, end, visit, settings);
   }
 }
 
@@ -246,16 +222,14 @@ ExtendedSamples extendedSamples(const Function& f, const Solid& solid,
 
 }  // namespace
 
-void visitField(const HarmonicField& field, const Solid& solid, const openvdb::FloatGrid& levelSet,
-                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+void visitField(const HarmonicField& field, const FieldRegion& region, const LeafVisitor& visit,
                 const VisitSettings& settings) {
-  visitAll(field, nullptr, solid, levelSet, region, visit, settings);
+  visitAll(field, nullptr, region, visit, settings);
 }
 
-void visitField(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
-                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+void visitField(const ComposedMap& map, const FieldRegion& region, const LeafVisitor& visit,
                 const VisitSettings& settings) {
-  visitAll(map.steps().front().field(), &map, solid, levelSet, region, visit, settings);
+  visitAll(map.steps().front().field(), &map, region, visit, settings);
 }
 
 ExtendedSamples sampleExtended(const HarmonicField& field, const Solid& solid,

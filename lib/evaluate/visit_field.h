@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "evaluate/extended_places.h"
+#include "evaluate/field_region.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/levelset/solid.h"
 
@@ -47,17 +48,13 @@ struct VisitSettings {
   bool gradients = true;  // without them LeafValues::gradients is null
 };
 
-// levelSet: of `solid`. region: the voxels to visit, on the same lattice, without tiles; those
-// outside the solid may be at any distance from it. Throws SettingError, DataError when the
-// lattices differ or the region has tiles, Cancelled. The same values for any number of threads.
-void visitField(const HarmonicField& field, const Solid& solid, const openvdb::FloatGrid& levelSet,
-                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+// Throws SettingError, Cancelled. The same values for any number of threads.
+void visitField(const HarmonicField& field, const FieldRegion& region, const LeafVisitor& visit,
                 const VisitSettings& settings);
 
 // The same of a map: three channels. The first of its steps is summed on the lattice, the others at
 // points.
-void visitField(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
-                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+void visitField(const ComposedMap& map, const FieldRegion& region, const LeafVisitor& visit,
                 const VisitSettings& settings);
 
 // The same at any points, world units: values #points x K, gradients #points x 3 K. beyond: as

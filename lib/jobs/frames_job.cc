@@ -102,7 +102,7 @@ MemoryNeed framesNeed(const FrameFitterSettings& settings, std::uint64_t others)
 
 MemoryNeed sequenceNeed(const FrameFitterSettings& settings, const Solid& rest,
                         const MapGridSettings& grids) {
-  return framesNeed(settings, mapGridMemory(rest, grids, {1, false, false}));
+  return framesNeed(settings, mapGridMemory(rest, grids, {1, false, true}));
 }
 
 FramePushSettings pushSettings(const FrameCarry& how) {

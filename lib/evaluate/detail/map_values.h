@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluate/field_region.h"
 #include "innermap/evaluate/evaluate_map.h"
 
 namespace innermap {
@@ -43,6 +44,14 @@ struct MapValues {
 // Map, Jacobian and energies, those of them that are wanted, with the value 0 on the region.
 MapGrids mapGridsOn(const openvdb::MaskGrid& region, const EvaluateSettings& wanted);
 
+// The voxels that values are wanted for. Throws SettingError, MemoryError, Cancelled.
+openvdb::MaskGrid::Ptr mapRegion(const openvdb::FloatGrid& levelSet,
+                                 const EvaluateSettings& settings);
+
+// region: of mapRegion() with these settings. Throws Cancelled.
+MapValues mapValues(const ComposedMap& map, const FieldRegion& region,
+                    const EvaluateSettings& settings);
+
 // levelSet: of the solid, or makeLevelSetBlock(). The same values for each block, whichever others
 // the level set has. Settings and errors as evaluateMap().
 MapValues mapValues(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
@@ -53,5 +62,9 @@ MapValues mapValues(const ComposedMap& map, const Solid& solid, const openvdb::F
 MapGrids concludeValues(const ComposedMap& map, const Solid& solid,
                         const openvdb::FloatGrid& levelSet, const EvaluateSettings& settings,
                         MapValues values);
+
+// Both, in a region that is made once for several maps.
+MapGrids evaluateMap(const ComposedMap& map, const FieldRegion& region,
+                     const EvaluateSettings& settings);
 
 }  // namespace innermap

@@ -97,7 +97,7 @@ class Continuation {
     visit.stage = "continuing inwards";
     visit.gradients = false;
     visitField(
-        field_, solid_, levelSet_, region,
+        field_, FieldRegion(solid_, levelSet_, region),
         [&](std::size_t, const LeafValues& v) {
           for (std::size_t g = 0; g < grids_.size(); ++g) {
             Leaf* leaf = grids_[g]->tree().probeLeaf(v.origin);

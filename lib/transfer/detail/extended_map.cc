@@ -100,7 +100,7 @@ void ExtendedMap::visitPointwise(const openvdb::MaskGrid& region, const Visitor&
 void ExtendedMap::visit(const openvdb::MaskGrid& region, const Visitor& visit,
                         std::string_view stage) const {
   if (map_.pointwise()) return visitPointwise(region, visit, stage);
-  visitField(harmonic(), solid_, levelSet_, region,
+  visitField(harmonic(), FieldRegion(solid_, levelSet_, region),
              [&](std::size_t leaf, const LeafValues& values) {
                std::vector<PointImage> samples(values.count);
                for (std::size_t i = 0; i < values.count; ++i) {

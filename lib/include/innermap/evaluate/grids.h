@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
+
+class FieldRegion;
 
 // Whether to repair folds (EvaluateSettings::repairUpTo). automatic: if at most kRepairedFolds of
 // the voxels inside fold, and not in sequences.
@@ -71,10 +74,10 @@ struct SolidGrids {
 SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});
 
 // How mapGridMemory() counts: harmonic maps one after another, whether there is a map_local, and
-// whether the cells between the voxels are looked at, as FrameEvaluator does not.
+// whether a FrameEvaluator makes the grids, which does not look at the cells between the voxels.
 struct MapGridKind {
   std::size_t steps = 1;
-  bool local = false, cells = true;
+  bool local = false, frame = false;
 };
 MapGridKind mapGridKind(const MappedSolid& mapped);
 
@@ -146,8 +149,10 @@ class FrameEvaluator {
 
   const FrameFitter& fitter_;
   std::vector<std::string> names_;
-  MapGridSettings settings_;
+  EvaluateSettings evaluate_;  // what all frames have in common
   openvdb::FloatGrid::Ptr surface_, density_;
+  openvdb::MaskGrid::Ptr mask_;
+  std::shared_ptr<FieldRegion> region_;
   std::vector<std::string> warnings_;
   StageSeconds seconds_;
 };

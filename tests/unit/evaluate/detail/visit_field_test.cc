@@ -35,6 +35,8 @@ struct Scene {
     levelSet = makeLevelSet(solid, {.resolution = 24});
     region = activeRegion(*levelSet);
   }
+
+  FieldRegion where() const { return {solid, *levelSet, *region}; }
 };
 
 // A map in two steps: values and gradients are those of its evaluation at points, outside too.
@@ -46,7 +48,7 @@ TEST(VisitField, MapsInSteps) {
   const ComposedMap map({step, step});
   std::atomic<std::size_t> visited{0};
   std::vector<double> error(scene.region->tree().leafCount(), 0);
-  visitField(map, scene.solid, *scene.levelSet, *scene.region,
+  visitField(map, scene.where(),
              [&](std::size_t leaf, const LeafValues& v) {
                for (std::size_t i = 0; i < v.count; ++i) {
                  const openvdb::Coord ijk =
@@ -74,7 +76,7 @@ TEST(VisitField, ValuesInsideAndBeyond) {
   const HarmonicField field = twoChannels();
   std::atomic<std::size_t> visited{0}, outside{0};
   std::vector<double> error(scene.region->tree().leafCount(), 0);
-  visitField(field, scene.solid, *scene.levelSet, *scene.region,
+  visitField(field, scene.where(),
              [&](std::size_t leaf, const LeafValues& v) {
                ASSERT_EQ(v.channels, 2u);
                for (std::size_t i = 0; i < v.count; ++i) {
@@ -110,7 +112,7 @@ TEST(VisitField, ValuesAlone) {
   std::vector<double> error(scene.region->tree().leafCount(), 0);
   VisitSettings settings{.accuracy = 1e-10, .gradients = false};
   visitField(
-      twoChannels(), scene.solid, *scene.levelSet, *scene.region,
+      twoChannels(), scene.where(),
       [&](std::size_t leaf, const LeafValues& v) {
         ASSERT_EQ(v.gradients, nullptr);
         for (std::size_t i = 0; i < v.count; ++i) {
@@ -122,6 +124,33 @@ TEST(VisitField, ValuesAlone) {
       },
       settings);
   for (const double e : error) EXPECT_LT(e, 1e-8);
+}
+
+// Of a region that is visited by one field after another, places are looked for once.
+TEST(VisitField, KeptPlacesGiveTheSameValues) {
+  const Scene scene;
+  const auto sumsOf = [](const HarmonicField& field, const FieldRegion& where) {
+    std::vector<double> sums(where.leafCount(), 0);
+    visitField(field, where,
+               [&](std::size_t leaf, const LeafValues& v) {
+                 for (std::size_t i = 0; i < v.count; ++i)
+                   sums[leaf] += (1.0 + v.offset[i]) * (v.share[i] + v.values[2 * i + 1]) +
+                                 norm(v.beyond[i]) + v.gradients[6 * i + 5];
+               },
+               {1e-10, {}});
+    return sums;
+  };
+  FieldRegion kept = scene.where();
+  kept.keepPlans();
+  Matrix weights(1, 2);
+  weights(0, 1) = -3;
+  const HarmonicField other({{0, 1.7, 0}}, weights, twoChannels().affine());
+  for (const HarmonicField& field : {twoChannels(), other}) {
+    const std::vector<double> found = sumsOf(field, kept), wanted = sumsOf(field, scene.where());
+    ASSERT_EQ(found.size(), wanted.size());
+    for (std::size_t l = 0; l < found.size(); ++l)
+      EXPECT_NEAR(found[l], wanted[l], 1e-12 * std::abs(wanted[l])) << l;
+  }
 }
 
 TEST(VisitField, PointsAgreeWithVoxels) {
@@ -150,13 +179,9 @@ TEST(VisitField, RefusesOtherLattices) {
   const auto other = scene.region->deepCopy();
   other->setTransform(openvdb::math::Transform::createLinearTransform(0.3));
   const auto nothing = [](std::size_t, const LeafValues&) {};
-  EXPECT_THROW(visitField(twoChannels(), scene.solid, *scene.levelSet, *other, nothing, {1e-8, {}}),
-               DataError);
-  EXPECT_THROW(visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing, {}),
-               SettingError);
-  test::expectCancels([&] {
-    visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing, {1e-8, {}});
-  });
+  EXPECT_THROW(FieldRegion(scene.solid, *scene.levelSet, *other), DataError);
+  EXPECT_THROW(visitField(twoChannels(), scene.where(), nothing, {}), SettingError);
+  test::expectCancels([&] { visitField(twoChannels(), scene.where(), nothing, {1e-8, {}}); });
 }
 
 }  // namespace
