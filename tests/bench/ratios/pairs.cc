@@ -11,6 +11,7 @@ namespace innermap::bench {
 namespace {
 
 constexpr double kTwist = 1.57079632679489661923, kBend = 0.5 * kTwist;
+constexpr std::size_t kFresh = 30000;
 constexpr std::uint64_t kFreshSeed = 0x6672657368;  // far from those that users give
 
 int longestAxis(const Box3& box) {
@@ -55,11 +56,11 @@ Pair bentAndTwistedPair(const std::string& name, const Options& options) {
   return pair;
 }
 
-FreshError freshError(const HarmonicField& field, const Pair& pair, std::size_t points) {
+FreshError freshError(const HarmonicField& field, const Pair& pair) {
   const Mesh source = readMesh(pair.source), target = readMeshLike(pair.target, source);
   const BoundaryPair boundary = makeBoundaryPair(source, target);
   FreshSampleSettings settings;
-  settings.count = points;
+  settings.count = kFresh;
   settings.seed = kFreshSeed;
   const BoundarySamples fresh = freshSamples(
       boundary.solid(),

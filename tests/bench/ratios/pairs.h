@@ -32,6 +32,6 @@ struct FreshError {
 };
 
 // At boundary points that no fit has seen, the same for every field of a pair.
-FreshError freshError(const HarmonicField& field, const Pair& pair, std::size_t points);
+FreshError freshError(const HarmonicField& field, const Pair& pair);
 
 }  // namespace innermap::bench

@@ -6,8 +6,6 @@
 namespace innermap::bench {
 namespace {
 
-constexpr std::size_t kFresh = 30000;
-
 Json run(const Pair& pair, std::size_t sources, std::size_t points, const std::string& solver,
          const Options& options) {
   const std::string file = options.scratch + "/map.ply";
@@ -16,7 +14,7 @@ Json run(const Pair& pair, std::size_t sources, std::size_t points, const std::s
        "--collocation", std::to_string(points), "--solver", solver, "--interpolation", "linear"},
       options);
   const HarmonicField field = readField(file).steps.front();
-  const FreshError error = freshError(field, pair, kFresh);
+  const FreshError error = freshError(field, pair);
   const Json& stages = done.report["seconds"];
   Json row{{"solver", solver},
            {"sources", field.sources().size()},

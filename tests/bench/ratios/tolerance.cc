@@ -6,15 +6,13 @@
 namespace innermap::bench {
 namespace {
 
-constexpr std::size_t kFresh = 30000;
-
 Json run(const Pair& pair, const char* tolerance, const Options& options) {
   const std::string file = options.scratch + "/map.ply";
   const ProgramRun done = runProgram({"fit", pair.source, pair.target, "-o", file, "--tolerance",
                                       tolerance, "--best-effort", "--one-to-one", "off"},
                                      options);
   const HarmonicField field = readField(file).steps.front();
-  const FreshError error = freshError(field, pair, kFresh);
+  const FreshError error = freshError(field, pair);
   Json row{{"pair", pair.name},
            {"tolerance", tolerance},
            {"met", error.p99 <= std::stod(tolerance) ? "yes" : "NO"},
