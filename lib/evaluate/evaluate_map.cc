@@ -171,12 +171,6 @@ openvdb::MaskGrid::Ptr maskLike(const openvdb::GridBase& grid) {
   return mask;
 }
 
-std::vector<openvdb::Coord> leafOrigins(const openvdb::MaskGrid& region) {
-  std::vector<openvdb::Coord> origins;
-  for (auto leaf = region.tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(leaf->origin());
-  return origins;
-}
-
 void addLeaf(const MapGrids& grids, const openvdb::Coord& at, openvdb::MaskGrid& region) {
   region.tree().touchLeaf(at)->topologyUnion(*grids.map->tree().probeConstLeaf(at));
 }
@@ -192,11 +186,11 @@ Evaluation::LeafTotals Evaluation::leavesOf(const std::set<openvdb::Coord>& bloc
   const openvdb::MaskGrid::Ptr region = maskLike(*values.grids.map);
   for (auto leaf = values.grids.map->tree().cbeginLeaf(); leaf; ++leaf)
     if (blocks.count(blockOf(leaf->origin())) > 0) addLeaf(values.grids, leaf->origin(), *region);
-  const std::vector<openvdb::Coord> origins = leafOrigins(*region);
-  for (const openvdb::Coord& origin : origins) leaves.emplace(origin, MapTotals());
-  visitField(map_, FieldRegion(solid_, levelSet_, *region),
-             [&](std::size_t leaf, const LeafValues& found) {
-               leaves.at(origins[leaf]) = store(found, values.grids);
+  const FieldRegion where(solid_, levelSet_, *region);
+  for (std::size_t l = 0; l < where.leafCount(); ++l) leaves.emplace(where.origin(l), MapTotals());
+  visitField(map_, where,
+             [&](std::size_t, const LeafValues& found) {
+               leaves.at(found.origin) = store(found, values.grids);
              },
              {accuracy_, kRepairing});
   return leaves;
@@ -229,10 +223,9 @@ void Evaluation::repair(MapValues& values) const {
   }
   const PartOfStage evaluating(kMoving, 1);
   LeafTotals leaves = leavesOf(blocks, values);
-  const std::vector<openvdb::Coord> origins = leafOrigins(*again);
   visitField(map_, FieldRegion(solid_, levelSet_, *again),
-             [&](std::size_t leaf, const LeafValues& found) {
-               leaves.at(origins[leaf]) =
+             [&](std::size_t, const LeafValues& found) {
+               leaves.at(found.origin) =
                    store(RepairedLeaf(found, repair, settings_.origin).leaf(), out);
              },
              {accuracy_, kRepairing});

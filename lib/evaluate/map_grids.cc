@@ -274,8 +274,7 @@ std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
   // Leaves of 8^3 voxels are allocated whole: along the surface they reach about 6 voxels to either
   // side. Map, Jacobian, two energies, masks; map_local is one more.
   constexpr double kReach = 12, kVoxel = 26, kLocal = 13, kLeaf = 512;
-  // Of a skin's voxel and of one that the surface cuts, kept by FieldRegion: bytes to the
-  // surface's.
+  // Bytes that FieldRegion keeps to a voxel's area of the surface: two voxels of the skin, one cut.
   constexpr double kPlan = 160;
   // Measured, bytes: what the first of several steps gives, for as many leaves as are evaluated
   // together (visit_field.cc); the boundary of the cells, a face, where overlaps are looked for and
