@@ -380,6 +380,7 @@ openvdb::MaskGrid::Ptr mapRegion(const openvdb::FloatGrid& levelSet,
 
 MapValues mapValues(const ComposedMap& map, const FieldRegion& region,
                     const EvaluateSettings& settings) {
+  require(settings);
   return Evaluation(map, region.solid(), region.levelSet(), settings).values(region);
 }
 

@@ -324,11 +324,13 @@ FrameEvaluator::FrameEvaluator(const FrameFitter& fitter, std::vector<std::strin
     surface_ = makeLevelSet(fitter.solid(), levelSetSettings(settings));
     if (wants("density")) density_ = makeFog(*surface_);
     warnings_ = checkLevelSet(*surface_, fitter.solid()).warnings;
+  });
+  requireInterior(interiorVoxels(*surface_), fitter.solid(), fitter.rest().mesh.name);
+  timed(seconds_, "voxelize", [&] {
     mask_ = mapRegion(*surface_, evaluate_);
     region_ = std::make_shared<FieldRegion>(fitter.solid(), *surface_, *mask_);
     region_->keepPlans();
   });
-  requireInterior(interiorVoxels(*surface_), fitter.solid(), fitter.rest().mesh.name);
 }
 
 bool FrameEvaluator::wants(const char* name) const {

@@ -48,7 +48,7 @@ MapGrids mapGridsOn(const openvdb::MaskGrid& region, const EvaluateSettings& wan
 openvdb::MaskGrid::Ptr mapRegion(const openvdb::FloatGrid& levelSet,
                                  const EvaluateSettings& settings);
 
-// region: of mapRegion() with these settings. Throws Cancelled.
+// region: of mapRegion() with these settings. Throws SettingError, Cancelled.
 MapValues mapValues(const ComposedMap& map, const FieldRegion& region,
                     const EvaluateSettings& settings);
 

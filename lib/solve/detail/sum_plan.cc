@@ -22,8 +22,8 @@ constexpr double kCheap = 2e9;        // plain pairs that take a second or two
 // of ten below 1e-3. High orders are dear: their translations cost the fourth power, while near
 // charges grow with the inverse square of the separation. So both go with the accuracy.
 FarFieldPlan planFor(double accuracy) {
-  // Of the magnitudes, too: sums in single precision lost 6e-9 to 1.9e-8 (of 4,000 to 52,500 fitted
-  // charges), those with a rough square root 1e-11 to 1e-10.
+  // Of the magnitudes, too: sums in single precision lost 6e-9 to 1.9e-8 (12,000 to 52,500 fitted
+  // charges), those with a rough square root at most 1e-10.
   constexpr double kError = 6e-4, kSingle = 4e-8, kRough = 3e-10;
   FarFieldPlan plan;
   const double digits = -std::log10(accuracy);
