@@ -30,8 +30,8 @@ TargetShape::TargetShape(const Solid& source, const TargetBoundary& target)
     : orientation_(orientationOf(source, target)),
       volume_(target.volume),
       reach_(kNear * target.diagonal),
-      winding_(target.moved, source.repaired().mesh.triangles),
-      tree_(target.moved, source.repaired().mesh.triangles) {}
+      tree_(target.moved, source.repaired().mesh.triangles),
+      winding_(tree_, source.repaired().mesh.triangles) {}
 
 TargetShape::TargetShape(const BoundaryPair& pair) : TargetShape(pair.solid(), pair.target) {
   if (pair.targetCheck.crossings.empty()) return;

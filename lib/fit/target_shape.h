@@ -41,8 +41,8 @@ class TargetShape {
  private:
   int orientation_ = 1;
   double volume_ = 0, reach_ = 0;
-  WindingNumber winding_;  // of all of the target's triangles
-  TriangleTree tree_;
+  TriangleTree tree_;  // of all of the target's triangles
+  WindingNumber winding_;
   std::optional<TriangleTree> crossings_;
   std::optional<WindingNumber> exposed_;  // of what bounds the source, where that is not all
 };

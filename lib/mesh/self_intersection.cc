@@ -1,13 +1,21 @@
+#include "mesh/self_intersection.h"
+
 #include <algorithm>
 
+#include "core/bvh.h"
 #include "innermap/mesh/check.h"
 #include "mesh/detail/intersect_triangles.h"
-#include "mesh/detail/local_triangles.h"
 #include "mesh/detail/topology.h"
-#include "mesh/triangle_tree.h"
 
 namespace innermap {
+
 void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>& triangles,
+                             const std::function<void(const Crossing&)>& visit) {
+  forEachSelfIntersection(TriangleTree(vertices, triangles), vertices, triangles, visit);
+}
+
+void forEachSelfIntersection(const TriangleTree& tree, const Points& vertices,
+                             const std::vector<Triangle>& triangles,
                              const std::function<void(const Crossing&)>& visit) {
   // Scaled by a power of two, which changes no bit of a mantissa: products of far too large or too
   // small coordinates stay in range.
@@ -29,7 +37,7 @@ void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>
     if (passThrough(corners(i), corners(j), place))
       found[part].push_back({i, j, frame.inverse * place});
   };
-  TriangleTree(vertices, triangles).overlappingPairs(look, [&] {
+  tree.overlappingPairs(look, [&] {
     for (std::vector<Crossing>& part : found) {
       for (const Crossing& crossing : part) visit(crossing);
       part.clear();

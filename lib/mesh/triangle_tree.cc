@@ -97,38 +97,25 @@ ClosestPoint closestOnTriangle(const Vec3& p, const std::array<Vec3, 3>& corners
 }
 
 struct TriangleTree::Implementation {
-  struct Leaf {
-    Vec3 a, b, c;
-    int index = 0;
-    bool sliver = false;
-  };
+  const std::shared_ptr<const LocalTriangles> local;
+  const LocalFrame& frame = local->frame;
+  const Bvh& bvh = local->bvh;
+  const std::vector<Box3>& boxes = local->boxes;
+  std::vector<char> slivers;  // in the order of the leaves
 
-  LocalFrame frame;
-  Bvh bvh;
-  std::vector<Leaf> triangles;  // in the order of the leaves
-  std::vector<Box3> boxes;      // same order
-  std::size_t size = 0;
-
-  Implementation(const Points& vertices, const std::vector<Triangle>& given) : size(given.size()) {
-    const LocalTriangles local(vertices, given);
-    frame = local.frame;
-    bvh = buildBvh(local.boxes, 4);
-    triangles.reserve(bvh.order.size());
-    boxes.reserve(bvh.order.size());
-    for (const int i : bvh.order) {
-      const auto& [a, b, c] = local.corners[i];
-      triangles.push_back({a, b, c, local.index[i], isSliver(a, b, c)});
-      boxes.push_back(local.boxes[i]);
-    }
+  Implementation(const Points& vertices, const std::vector<Triangle>& given)
+      : local(std::make_shared<const LocalTriangles>(vertices, given)) {
+    slivers.reserve(local->corners.size());
+    for (const auto& [a, b, c] : local->corners) slivers.push_back(isSliver(a, b, c));
   }
 
   void search(int i, const Vec3& p, Candidate& best, int& bestIndex) const {
-    const Leaf& t = triangles[i];
-    const Candidate found = closestOnTriangle(p, t.a, t.b, t.c, t.sliver);
+    const auto& [a, b, c] = local->corners[i];
+    const Candidate found = closestOnTriangle(p, a, b, c, slivers[i] != 0);
     if (found.squared < best.squared ||
-        (found.squared == best.squared && bestIndex >= 0 && t.index < bestIndex)) {
+        (found.squared == best.squared && bestIndex >= 0 && local->index[i] < bestIndex)) {
       best = found;
-      bestIndex = t.index;
+      bestIndex = local->index[i];
     }
   }
 
@@ -241,7 +228,7 @@ struct TriangleTree::Implementation {
                     boxes[j].lower[a] <= boxes[i].upper[a];
         }
         if (!overlap) continue;
-        const int s = triangles[i].index, t = triangles[j].index;
+        const int s = local->index[i], t = local->index[j];
         visit(std::min(s, t), std::max(s, t));
       }
     }
@@ -342,6 +329,8 @@ void TriangleTree::overlappingPairs(const PairVisitor& visit,
   implementation_->overlappingPairs(visit, next);
 }
 
-std::size_t TriangleTree::size() const { return implementation_->size; }
+std::size_t TriangleTree::size() const { return implementation_->local->given; }
+
+std::shared_ptr<const LocalTriangles> TriangleTree::local() const { return implementation_->local; }
 
 }  // namespace innermap

@@ -12,6 +12,8 @@
 
 namespace innermap {
 
+struct LocalTriangles;
+
 struct ClosestPoint {
   SurfacePoint address;  // triangle -1 when nothing is within the search radius
   Vec3 position;
@@ -56,6 +58,9 @@ class TriangleTree {
   void overlappingPairs(const PairVisitor& visit, const std::function<void()>& next) const;
 
   std::size_t size() const;
+
+  // For what else searches among these triangles.
+  std::shared_ptr<const LocalTriangles> local() const;
 
  private:
   struct Implementation;

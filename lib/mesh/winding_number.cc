@@ -2,10 +2,12 @@
 
 #include <array>
 #include <mutex>
+#include <utility>
 
 #include "core/pi.h"
 #include "mesh/detail/local_triangles.h"
 #include "mesh/detail/ray_crossings.h"
+#include "mesh/triangle_tree.h"
 
 namespace innermap {
 namespace {
@@ -166,21 +168,17 @@ Expansion expansionOf(const Moments& m) {
 }  // namespace
 
 struct WindingNumber::Implementation {
-  LocalFrame frame;
-  Bvh bvh;
-  std::vector<LocalTriangles::Corners> triangles;  // in the order of the leaves
-  bool balanced = false;                           // see isBalanced()
+  const std::shared_ptr<const LocalTriangles> local;
+  const LocalFrame& frame = local->frame;
+  const Bvh& bvh = local->bvh;
+  const std::vector<LocalTriangles::Corners>& triangles = local->corners;
+  const bool balanced;  // see isBalanced()
   mutable std::once_flag expanded;
   mutable std::vector<Expansion> expansions;  // one a node
 
-  Implementation(const Points& vertices, const std::vector<Triangle>& given) {
-    const LocalTriangles local(vertices, given);
-    frame = local.frame;
-    bvh = buildBvh(local.boxes, 4);
-    triangles.reserve(bvh.order.size());
-    for (const int i : bvh.order) triangles.push_back(local.corners[i]);
-    balanced = local.index.size() == given.size() && isBalanced(given);
-  }
+  Implementation(std::shared_ptr<const LocalTriangles> shared, const std::vector<Triangle>& given)
+      : local(std::move(shared)),
+        balanced(local->index.size() == given.size() && isBalanced(given)) {}
 
   void expand() const {
     const Points centers = areaCentroids();
@@ -307,7 +305,11 @@ struct WindingNumber::Implementation {
 };
 
 WindingNumber::WindingNumber(const Points& vertices, const std::vector<Triangle>& triangles)
-    : implementation_(std::make_shared<const Implementation>(vertices, triangles)) {}
+    : implementation_(std::make_shared<const Implementation>(
+          std::make_shared<const LocalTriangles>(vertices, triangles), triangles)) {}
+
+WindingNumber::WindingNumber(const TriangleTree& tree, const std::vector<Triangle>& triangles)
+    : implementation_(std::make_shared<const Implementation>(tree.local(), triangles)) {}
 
 double WindingNumber::at(const Vec3& p) const { return implementation_->at(p); }
 
@@ -315,7 +317,7 @@ int WindingNumber::wholeAt(const Vec3& p) const {
   const Implementation& i = *implementation_;
   if (!isFinite(p)) return 0;
   const std::optional<int> counted =
-      i.balanced ? rayCrossings(i.bvh, i.triangles, i.frame.toLocal(p)) : std::nullopt;
+      i.balanced ? rayCrossings(*i.local, i.frame.toLocal(p)) : std::nullopt;
   return counted ? *counted : static_cast<int>(std::lround(at(p)));
 }
 

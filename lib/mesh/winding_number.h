@@ -13,11 +13,15 @@
 
 namespace innermap {
 
+class TriangleTree;
+
 // Immutable after construction; safe from any number of threads.
 class WindingNumber {
  public:
-  WindingNumber() : WindingNumber({}, {}) {}  // 0 everywhere
+  WindingNumber() : WindingNumber(Points(), {}) {}  // 0 everywhere
   WindingNumber(const Points& vertices, const std::vector<Triangle>& triangles);
+  // Of the triangles that the tree was made of; the two share what they keep of them.
+  WindingNumber(const TriangleTree& tree, const std::vector<Triangle>& triangles);
 
   // About 1 inside a closed outward mesh, 0 outside, the number of covers where parts overlap.
   // Absolute error below 1e-2 (accuracy 2 in the paper's terms); on the surface itself undefined.

@@ -10,6 +10,7 @@ import base64
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -48,7 +49,8 @@ class Browser:
              "--disable-background-networking", "--disable-component-update", "--no-first-run",
              "--disable-dev-shm-usage", f"--window-size={width},{height}",
              f"--user-data-dir={self.profile.name}", "about:blank"],
-            close_fds=False, preexec_fn=pipes, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            close_fds=False, preexec_fn=pipes, start_new_session=True,
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(to_browser)
         os.close(from_browser)
         self.rest = b""
@@ -58,7 +60,7 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        self.process.kill()
+        os.killpg(self.process.pid, signal.SIGKILL)  # or its children go on to write into the profile
         self.process.wait()
         os.close(self.to)
         os.close(self.out)

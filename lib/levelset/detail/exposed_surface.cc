@@ -8,8 +8,8 @@
 #include "core/disjoint_sets.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/check.h"
 #include "mesh/connectivity.h"
+#include "mesh/self_intersection.h"
 #include "mesh/winding_number.h"
 
 namespace innermap {
@@ -92,13 +92,13 @@ void classifyPatches(Work& work, const std::vector<char>& cut) {
 
 using Partners = std::vector<std::pair<int, std::vector<int>>>;  // triangle, those that cut it
 
-Partners partnersOf(const std::vector<Crossing>& crossings) {
+Partners partnersOf(const TriangleTree& tree, const Points& vertices,
+                    const std::vector<Triangle>& triangles) {
   std::vector<std::pair<int, int>> both;
-  both.reserve(2 * crossings.size());
-  for (const Crossing& c : crossings) {
+  forEachSelfIntersection(tree, vertices, triangles, [&](const Crossing& c) {
     both.push_back({c.first, c.second});
     both.push_back({c.second, c.first});
-  }
+  });
   std::sort(both.begin(), both.end());
   Partners partners;
   for (const auto& [t, other] : both) {
@@ -251,13 +251,14 @@ ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize) {
   Points local;
   local.reserve(mesh.vertices.size());
   for (const Vec3& v : mesh.vertices) local.push_back(v - center);
-  WindingNumber winding(local, mesh.triangles);
+  const TriangleTree tree(local, mesh.triangles);
+  WindingNumber winding(tree, mesh.triangles);
   Work work{mesh, std::move(local), box.diagonal(), std::move(winding), {}, {}};
   work.sides.resize(mesh.triangles.size());
   work.pieces.resize(mesh.triangles.size());
 
   throwIfCancelled();
-  const Partners partners = partnersOf(selfIntersections(work.local, mesh.triangles));
+  const Partners partners = partnersOf(tree, work.local, mesh.triangles);
   std::vector<char> cut(mesh.triangles.size(), 0);
   for (const auto& [t, others] : partners) cut[t] = 1;
   classifyPatches(work, cut);

@@ -1,29 +1,47 @@
 #include "mesh/detail/local_triangles.h"
 
 namespace innermap {
+namespace {
 
-LocalTriangles::LocalTriangles(const Points& vertices, const std::vector<Triangle>& triangles) {
+constexpr int kLeafSize = 4;
+
+template <typename T>
+std::vector<T> inOrder(const std::vector<T>& values, const std::vector<int>& order) {
+  std::vector<T> out;
+  out.reserve(order.size());
+  for (const int i : order) out.push_back(values[i]);
+  return out;
+}
+
+}  // namespace
+
+LocalTriangles::LocalTriangles(const Points& vertices, const std::vector<Triangle>& triangles)
+    : given(triangles.size()) {
   Box3 box;
-  index.reserve(triangles.size());
+  std::vector<int> finite;
+  finite.reserve(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto [i, j, k] = triangles[t];
     if (!isFinite(vertices[i]) || !isFinite(vertices[j]) || !isFinite(vertices[k])) continue;
-    index.push_back(static_cast<int>(t));
+    finite.push_back(static_cast<int>(t));
     for (const int v : triangles[t]) box.add(vertices[v]);
   }
   frame = LocalFrame(box);
-  corners.reserve(index.size());
-  boxes.reserve(index.size());
-  for (const int t : index) {
+  std::vector<Box3> around(finite.size());
+  const auto local = [&](int t) -> Corners {
     const auto [i, j, k] = triangles[t];
-    corners.push_back(
-        {frame.toLocal(vertices[i]), frame.toLocal(vertices[j]), frame.toLocal(vertices[k])});
-    Box3 b;
-    b.add(corners.back().a);
-    b.add(corners.back().b);
-    b.add(corners.back().c);
-    boxes.push_back(b);
+    return {frame.toLocal(vertices[i]), frame.toLocal(vertices[j]), frame.toLocal(vertices[k])};
+  };
+  for (std::size_t i = 0; i < finite.size(); ++i) {
+    const Corners t = local(finite[i]);
+    for (const Vec3& corner : {t.a, t.b, t.c}) around[i].add(corner);
   }
+  bvh = buildBvh(around, kLeafSize);
+  boxes = inOrder(around, bvh.order);
+  index = inOrder(finite, bvh.order);
+  bvh.order = {};
+  corners.reserve(index.size());
+  for (const int t : index) corners.push_back(local(t));
 }
 
 }  // namespace innermap

@@ -66,9 +66,8 @@ bool isBalanced(const std::vector<Triangle>& triangles) {
   return balanced;
 }
 
-std::optional<int> rayCrossings(const Bvh& bvh,
-                                const std::vector<LocalTriangles::Corners>& triangles,
-                                const Vec3& p) {
+std::optional<int> rayCrossings(const LocalTriangles& triangles, const Vec3& p) {
+  const Bvh& bvh = triangles.bvh;
   if (bvh.nodes.empty()) return 0;
   const bool forward = p.x > 0;  // the shorter way out
   int sum = 0;
@@ -84,7 +83,7 @@ std::optional<int> rayCrossings(const Bvh& bvh,
       continue;
     }
     for (int i = node.first; i < node.first + node.count; ++i) {
-      const Sign out = crossing(triangles[i], p, forward);
+      const Sign out = crossing(triangles.corners[i], p, forward);
       if (out == Sign::undecided) return {};
       sum += numberOf(out);
     }

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/bvh.h"
 #include "innermap/core/vec3.h"
 #include "mesh/detail/local_triangles.h"
 
@@ -14,13 +13,11 @@ namespace innermap {
 // as its winding numbers, which are whole, say. A triangle with a repeated vertex has no edges.
 bool isBalanced(const std::vector<Triangle>& triangles);
 
-// Out less in, of the ray from p along the x axis, away from the origin. `triangles` are those of
-// the tree, in the order of its leaves; p and they in the tree's frame. On the surface itself
-// undefined. The ray is moved aside by an infinitely small amount, the same for all triangles
-// (Edelsbrunner, Muecke, "Simulation of Simplicity", 1990), and signs are exact, so that edges and
-// vertices that it meets count once. Nothing where the signs are undecided: see orientation().
-std::optional<int> rayCrossings(const Bvh& bvh,
-                                const std::vector<LocalTriangles::Corners>& triangles,
-                                const Vec3& p);
+// Out less in, of the ray from p, in the triangles' frame, along the x axis, away from the origin.
+// On the surface itself undefined. The ray is moved aside by an infinitely small amount, the same
+// for all triangles (Edelsbrunner, Muecke, "Simulation of Simplicity", 1990), and signs are exact,
+// so that edges and vertices that it meets count once. Nothing where the signs are undecided: see
+// orientation().
+std::optional<int> rayCrossings(const LocalTriangles& triangles, const Vec3& p);
 
 }  // namespace innermap

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/random.h"
 #include "mesh/shapes.h"
 #include "mesh/triangle_tree.h"
@@ -67,6 +69,22 @@ TEST(WindingNumber, AgreesWithTheExactSumOnSoups) {
       EXPECT_LT(largest, 1e-2);
       EXPECT_GT(largest, 0);  // otherwise nothing was expanded
     }
+  }
+}
+
+TEST(WindingNumber, OfATreeIsThatOfItsTriangles) {
+  Mesh mesh = shapes::joined(shapes::icosphere(3), shapes::icosphere(2, 0.5));
+  // Left out of the tree, and so of what is shared.
+  mesh.vertices.push_back({std::nan(""), 0, 0});
+  mesh.triangles.insert(mesh.triangles.begin(), {0, 1, static_cast<int>(mesh.vertices.size()) - 1});
+  const WindingNumber alone(mesh.vertices, mesh.triangles);
+  const WindingNumber shared(TriangleTree(mesh.vertices, mesh.triangles), mesh.triangles);
+  const CounterRandom random(5, 6);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 p = 1.5 * randomPoint(random, i);
+    EXPECT_DOUBLE_EQ(shared.at(p), alone.at(p));
+    EXPECT_EQ(shared.wholeAt(p), alone.wholeAt(p));
+    EXPECT_NEAR(shared.at(p), shared.exactAt(p), 2e-2);
   }
 }
 
