@@ -1,4 +1,4 @@
-// The pairs of triangles that pass through each other, among triangles that a tree is at hand of.
+// Pairs of triangles that pass through each other, for callers that have a tree of them already.
 #pragma once
 
 #include <functional>

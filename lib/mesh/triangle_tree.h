@@ -59,7 +59,7 @@ class TriangleTree {
 
   std::size_t size() const;
 
-  // For what else searches among these triangles.
+  // For other searches among the same triangles.
   std::shared_ptr<const LocalTriangles> local() const;
 
  private:

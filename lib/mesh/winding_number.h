@@ -20,7 +20,8 @@ class WindingNumber {
  public:
   WindingNumber() : WindingNumber(Points(), {}) {}  // 0 everywhere
   WindingNumber(const Points& vertices, const std::vector<Triangle>& triangles);
-  // Of the triangles that the tree was made of; the two share what they keep of them.
+  // `triangles` are those that the tree was made of; this shares the tree's copies of their
+  // corners.
   WindingNumber(const TriangleTree& tree, const std::vector<Triangle>& triangles);
 
   // About 1 inside a closed outward mesh, 0 outside, the number of covers where parts overlap.

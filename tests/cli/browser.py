@@ -60,7 +60,7 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        os.killpg(self.process.pid, signal.SIGKILL)  # or its children go on to write into the profile
+        os.killpg(self.process.pid, signal.SIGKILL)  # its children write into the profile too
         self.process.wait()
         os.close(self.to)
         os.close(self.out)

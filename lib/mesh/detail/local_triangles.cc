@@ -27,21 +27,20 @@ LocalTriangles::LocalTriangles(const Points& vertices, const std::vector<Triangl
     for (const int v : triangles[t]) box.add(vertices[v]);
   }
   frame = LocalFrame(box);
+  std::vector<Corners> places;
+  places.reserve(finite.size());
   std::vector<Box3> around(finite.size());
-  const auto local = [&](int t) -> Corners {
-    const auto [i, j, k] = triangles[t];
-    return {frame.toLocal(vertices[i]), frame.toLocal(vertices[j]), frame.toLocal(vertices[k])};
-  };
-  for (std::size_t i = 0; i < finite.size(); ++i) {
-    const Corners t = local(finite[i]);
-    for (const Vec3& corner : {t.a, t.b, t.c}) around[i].add(corner);
+  for (std::size_t n = 0; n < finite.size(); ++n) {
+    const auto [i, j, k] = triangles[finite[n]];
+    places.push_back(
+        {frame.toLocal(vertices[i]), frame.toLocal(vertices[j]), frame.toLocal(vertices[k])});
+    for (const Vec3& p : {places[n].a, places[n].b, places[n].c}) around[n].add(p);
   }
   bvh = buildBvh(around, kLeafSize);
-  boxes = inOrder(around, bvh.order);
+  corners = inOrder(places, bvh.order);
   index = inOrder(finite, bvh.order);
+  boxes = inOrder(around, bvh.order);
   bvh.order = {};
-  corners.reserve(index.size());
-  for (const int t : index) corners.push_back(local(t));
 }
 
 }  // namespace innermap
